@@ -1,10 +1,11 @@
 //! The outline of the cloth before it is cleaned: one closed chain round the sum of all patches of cloth.
 //!
-//! Every chord has a rectangle, every outer bend a wedge, all counter-clockwise. Laid beside each other and
-//! beside the seam line, these patches share most sides, each run through once in either direction. Without
-//! the shared sides their boundaries are a single chain. The winding number of the chain at a point is the
-//! number of patches that hold the point, so the region where it is not 0 is the union of all patches; the
-//! chain has a third of their segments.
+//! Every chord of the seam line has a rectangle of cloth outside it and every outer bend a wedge, all
+//! counter-clockwise. Neighbouring patches, and the patches and the seam line, share sides that are run
+//! through once in either direction. Without these shared sides the boundaries of all patches are a single
+//! chain. The winding number of the chain at a point is the number of patches that hold the point, so the
+//! region where it is not 0 is the union of all patches; the chain has a third of the segments that the
+//! separate patches have.
 
 use crate::chain::{Chain, Tag, corner_edge, corner_tag};
 use crate::corner::{CornerCloth, HalfPlane, Outcome, STRAIGHT, corner_cloth};
@@ -13,7 +14,7 @@ use crate::ring::{Chord, FLATNESS, Ring};
 use crate::{Finding, SegmentKind};
 use toile_geometry::Vec2;
 
-/// The cloth of one ring: the chain along the ring, the loops of its corners and dart caps, and findings.
+/// Cloth along one ring: the chain along the ring, the loops of corners and dart caps, and the findings.
 pub(crate) struct Cloth {
     pub chains: Vec<Chain>,
     /// Whether each edge of the ring is a leg of a dart, which has no allowance of its own.
@@ -21,24 +22,27 @@ pub(crate) struct Cloth {
     pub findings: Vec<Finding>,
 }
 
-/// The cloth at each corner of a ring, by the edge that starts at the corner.
+/// Cloth at each corner of a ring, indexed by the edge that starts at the corner.
 struct Corners {
     cloth: Vec<Option<CornerCloth>>,
 }
 
-/// A cut that the corner at the start of the edge `corner` makes in an allowance.
+/// A straight cut through the allowance of an edge, made for the shape of the corner at the start of the edge
+/// `corner`.
 struct Trim {
     plane: HalfPlane,
     corner: usize,
 }
 
-/// Largest bend (rad) that a wedge with a single tip covers: where tangents of an arc of radius w meet at an
-/// angle t, their tip lies w t^2 / 8 beyond the arc, here no more than [`FLATNESS`].
+/// Largest bend (rad) that a wedge with a single tip covers. The tip is the point where the tangents of an
+/// arc of radius `width` at two ends an angle t apart meet; it lies width t^2 / 8 beyond the arc, here at
+/// most [`FLATNESS`].
 fn wedge_step(width: f64) -> f64 {
     (8.0 * FLATNESS / width).sqrt().min(1.0)
 }
 
-/// Tips of the wedge outside a bend, relative to the bend: points where tangents of the arc meet.
+/// Tips of the wedge outside a bend (m), relative to the bend's point on the seam line: points where tangents
+/// of the arc with the radius `width` meet.
 fn wedge(normals: [Vec2; 2], width: f64) -> Vec<Vec2> {
     let [n, m] = normals;
     let turn = n.perp(&m).atan2(n.dot(&m)).max(0.0);
@@ -71,7 +75,7 @@ impl Corners {
         Self { cloth }
     }
 
-    /// The cuts that the corners at the ends of an edge make in the allowance of chord `k`.
+    /// Cuts that the corners at both ends of an edge make in the allowance of chord `k` of that edge.
     fn trims(&self, ring: &Ring, k: usize) -> Vec<Trim> {
         let chord = &ring.chords[k];
         let edge = &ring.edges[chord.edge];
@@ -93,7 +97,8 @@ impl Corners {
         if edge.length - chord.at - chord.length < reach(after, after) {
             trims.extend(trim(after, 0));
         }
-        // A curved edge may bend back over the line of the cut: cloth inside the seam line is not cut away.
+        // A curved edge may bend back over the line of a cut: the cut applies only to chords that lie inside
+        // its line.
         let outer = [chord.from + ring.out(k, 0), chord.to + ring.out(k, 1)];
         let beyond = |p: &Vec2, plane: &HalfPlane| plane.normal.dot(p) - plane.limit;
         trims.retain(|Trim { plane, .. }| {
@@ -105,20 +110,22 @@ impl Corners {
     }
 }
 
-/// Shape of the chain at the start of a chord.
+/// Course of the chain of cloth from one chord to the next.
 #[derive(Clone, Copy, PartialEq)]
 enum Joint {
-    /// Runs in to the seam line and out again.
+    /// The chain runs in to the seam line and out again.
     Spike,
-    /// Runs straight on, or by a step between two widths.
+    /// The chain runs straight on, or by a step between two widths.
     Flat,
-    /// Runs round an outer bend.
+    /// The chain runs round an outer bend, along a wedge.
     Wedge,
-    /// At a slight bend: both allowances end at this point, on the line half-way between their normals.
+    /// Slight bend: the allowances of both chords end at this point (m), half-way between the directions of
+    /// their normals.
     Meet(Vec2),
 }
 
-/// Inner bends with a greater cosine belong to a curve, whose normal is taken to turn evenly there.
+/// Inner bends whose cosine is greater than this are bends of a curve (1): its normal is taken to turn evenly
+/// there.
 const SLIGHT: f64 = 0.9;
 
 fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint {
@@ -152,7 +159,7 @@ fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint
         return Joint::Meet(chord.from + middle * (width / (1.0 + cos)));
     }
     if sin < 0.0 && cos > SLIGHT {
-        // The normal of the parabola through three points: the nearer point weighs more.
+        // The normal of a parabola through the three points: the shorter chord has the greater weight.
         let normal = before.normal * chord.length + chord.normal * before.length;
         return Joint::Meet(chord.from + normal.normalize() * width);
     }
@@ -162,7 +169,7 @@ fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint
     }
 }
 
-/// The cloth along a ring with its allowances. `caps` replace the legs of darts.
+/// Cloth along a ring with its allowances. `caps` replace the legs of the darts.
 pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
     let mut is_leg = vec![false; ring.edges.len()];
     for cap in caps {
@@ -176,7 +183,7 @@ pub(crate) fn cloth(ring: &Ring, caps: &[Cap]) -> Cloth {
     let mut chains = Vec::new();
     for (k, chord) in ring.chords.iter().enumerate() {
         if is_leg[chord.edge] {
-            // The cap replaces both legs at the start of the first one.
+            // The cap replaces both legs: it is added at the start of the first leg.
             let cap = caps.iter().find(|cap| cap.legs[0] == chord.edge);
             if let Some(cap) = cap.filter(|_| k == ring.edges[chord.edge].chords.start) {
                 cap.roof
@@ -260,8 +267,9 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
     }
     let crossing = crossed(chord, outer);
     if let Some(x) = crossing {
-        // The normals at the ends cross: the cloth runs up to the crossing, and beyond it the other way
-        // round. There the cut line is not this chord's own, but the end of a swallowed stretch.
+        // The ends of this allowance cross at `x`: the cloth runs up to `x`, and beyond `x` the chain runs
+        // round backwards. The sides there are not tagged as this chord's own cut line, but as the end of an
+        // allowance.
         chain.side(outer[0], end_tag);
         chain.side(x, end_tag);
         chain.side(outer[1], edge_tag(None));
@@ -271,7 +279,7 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
         chain.side(outer[0], edge_tag(Some((k, [0.0, 1.0]))));
     }
     match joints[1] {
-        // The next chord starts at this point.
+        // The chain of the next chord starts at the same point.
         Joint::Meet(_) if !next_trimmed => {}
         Joint::Meet(_) | Joint::Spike | Joint::Flat => chain.side(outer[1], end_tag),
         Joint::Wedge => {
@@ -294,7 +302,8 @@ fn outer_ends(ring: &Ring, k: usize, joints: [Joint; 2]) -> [Vec2; 2] {
     [end(0, chord.from), end(1, chord.to)]
 }
 
-/// Crossing of the two ends of a chord's allowance, if they cross: the curve is tighter than the allowance.
+/// Crossing of the two ends of a chord's allowance. `None`: the ends do not cross. They cross where the curve
+/// is tighter than the allowance is wide.
 fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
     if (end - start).dot(&chord.along()) >= 0.0 {
         return None;
@@ -304,7 +313,7 @@ fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
     (share > 0.0 && share < 1.0).then(|| chord.from + a * share)
 }
 
-/// Adds the outer boundary of a chord's rectangle after the corners have cut it.
+/// Adds the outer boundary of a chord's rectangle after the cuts of the corners are made in it.
 fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2; 2], &[Trim])) {
     let chord = &ring.chords[k];
     let outer = ends;
@@ -346,7 +355,7 @@ fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2;
     }
 }
 
-/// The cloth beyond crossing normals, where a corner cuts some of it away.
+/// Cloth of a chord beyond the crossing of its two ends, if a corner cuts some of it away.
 fn trimmed_beyond(ring: &Ring, k: usize, ends: [Vec2; 2], trims: &[Trim]) -> Option<Chain> {
     let x = crossed(&ring.chords[k], ends)?;
     let corner = trims.first()?.corner;
@@ -357,7 +366,7 @@ fn trimmed_beyond(ring: &Ring, k: usize, ends: [Vec2; 2], trims: &[Trim]) -> Opt
     (cloth.len() > 2).then(|| Chain::patch(cloth, corner_tag(ring, corner)))
 }
 
-/// The wedge at the outer bend at the end of chord `k`, where a corner cuts some of it away.
+/// The wedge at the outer bend at the end of chord `k`, if a corner cuts some of it away.
 fn trimmed_wedge(ring: &Ring, k: usize, trims: [&Vec<Trim>; 2]) -> Option<Chain> {
     let (chord, next) = (&ring.chords[k], &ring.chords[(k + 1) % ring.chords.len()]);
     let width = ring.edges[chord.edge].width;

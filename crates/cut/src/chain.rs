@@ -4,14 +4,14 @@ use crate::SegmentKind;
 use crate::ring::Ring;
 use toile_geometry::Vec2;
 
-/// The edge that a side of a chain comes from, and the kind of cloth it bounds.
+/// The edge that a side of a chain comes from, and the kind of cloth that the side bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tag {
-    /// Edge of the ring.
+    /// Number of the edge in the ring.
     pub edge: usize,
     pub kind: SegmentKind,
-    /// The chord that the side runs along, with the side's start and end on it (shares of the chord's
-    /// length).
+    /// The chord that the side runs along, and the start and end of the side on that chord (shares of the
+    /// chord's length). `None`: the side runs along no chord.
     pub beside: Option<(usize, [f64; 2])>,
 }
 
@@ -34,8 +34,8 @@ impl Chain {
     }
 }
 
-/// Tag of the sides that belong to the corner at an edge's start. In a ring that is walked backwards the
-/// corner is named after the edge before, which starts there as given.
+/// Tag of the sides that belong to the corner at the start of `edge`. Corners are numbered by the edge that
+/// starts there as given; in a ring that is walked backwards this is the edge before.
 pub(crate) fn corner_tag(ring: &Ring, edge: usize) -> Tag {
     Tag {
         edge: corner_edge(ring, edge),
@@ -44,7 +44,7 @@ pub(crate) fn corner_tag(ring: &Ring, edge: usize) -> Tag {
     }
 }
 
-/// The edge of the ring that the corner at an edge's start is named after.
+/// Number, in the ring, of the edge that stands for the corner at the start of `edge`.
 pub(crate) fn corner_edge(ring: &Ring, edge: usize) -> usize {
     if ring.reversed {
         ring.before(edge)

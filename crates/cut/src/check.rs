@@ -5,12 +5,12 @@ use crate::{CutError, EdgeIndex, SeamEdge, SeamLine};
 use toile_geometry::{Polygon, PolygonDefect};
 use toile_pattern::MitreLimit;
 
-/// Largest gap between the ends of two edges that meet (m): rounding of formulas and files, and far below
-/// what can be cut.
+/// Largest gap between the ends of two edges that meet (m). It allows for the rounding of formulas and files
+/// and is far below what can be cut.
 const CLOSED: f64 = 1e-6;
 
 impl SeamLine {
-    /// The loops flattened, outline first, after all checks.
+    /// The loops flattened to rings, the outline first, after all checks have passed.
     pub(crate) fn rings(&self) -> Result<Vec<Ring>, CutError> {
         let mut rings = Vec::with_capacity(1 + self.holes.len());
         for ring in 0..=self.holes.len() {

@@ -7,21 +7,21 @@
 use toile_geometry::{Vec2, ring_area};
 use toile_pattern::MitreLimit;
 
-/// Shape of the cut line at a corner where the piece is convex. At an inner corner the two cut lines meet on
-/// their own, whatever shape is asked: no cloth is added there and none taken away.
+/// Shape of the cut line at an outer corner, where the piece is convex. At an inner corner the two cut lines
+/// meet without further cloth, whichever shape is asked: no cloth is added there or taken away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Corner {
     /// Both cut lines run on until they meet, in `p + r` with `n.r = a`, `m.r = b`. A tip farther out than
     /// the corner's limit is cut off at the limit, square to `r`.
     #[default]
     Mitre,
-    /// Straight across from the end of one allowance to the end of the other.
+    /// A straight line from the end of one edge's allowance to the end of the other edge's allowance.
     Bevel,
-    /// The edge before is sewn first: its seam line runs on to the cut line of the edge after, and there the
-    /// allowance of the edge before ends square.
+    /// The seam of the edge before is sewn first: its seam line is extended to the cut line of the edge
+    /// after, and there the allowance of the edge before ends square.
     SquareToPrevious,
-    /// The edge after is sewn first: its seam line runs back to the cut line of the edge before, and there
-    /// the allowance of the edge after ends square.
+    /// The seam of the edge after is sewn first: its seam line is extended back to the cut line of the edge
+    /// before, and there the allowance of the edge after ends square.
     SquareToNext,
     /// Each cut line runs to the other edge's extended seam line; the ends are joined by a straight line.
     Extended,
@@ -32,8 +32,8 @@ pub enum Corner {
     MirroredInNext,
 }
 
-/// Usual limit of a corner's reach, over the wider of its allowances (1): farther out, a point of cloth is in
-/// the way of the sewing. 2.5 keeps mitres down to 47 degrees whole.
+/// Default limit of the distance from a corner to its cut line, over the wider of the two allowances (1): a
+/// longer point of cloth is in the way of the sewing. 2.5 keeps mitres down to 47 degrees whole.
 pub const MITRE_LIMIT: f64 = MitreLimit::USUAL;
 
 /// Sine of the smallest turn that counts as a corner (1): at this turn the ends of two allowances of 40 mm
@@ -41,7 +41,7 @@ pub const MITRE_LIMIT: f64 = MitreLimit::USUAL;
 pub(crate) const STRAIGHT: f64 = 1e-5;
 
 impl Corner {
-    /// This shape in the loop walked the other way.
+    /// The shape for the loop walked the other way: previous and next are swapped.
     pub(crate) fn reversed(self) -> Self {
         match self {
             Self::SquareToPrevious => Self::SquareToNext,
@@ -81,7 +81,7 @@ impl HalfPlane {
         kept
     }
 
-    /// The half-plane moved by a vector.
+    /// The half-plane moved by the vector `by` (m).
     pub fn translated(&self, by: Vec2) -> Self {
         Self {
             normal: self.normal,
@@ -90,18 +90,18 @@ impl HalfPlane {
     }
 }
 
-/// Whether a corner was made as asked.
+/// Result of making a corner: as asked, cut off, or mitred instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outcome {
     AsAsked,
-    /// The corner would have reached this far (m) and is cut off.
+    /// The corner is cut off; uncut, it would reach this far (m).
     CutOff(f64),
-    /// The shape asked would reach this far (m): the corner is mitred instead.
+    /// The corner is mitred, as the shape asked for would reach this far (m).
     Mitred(f64),
 }
 
-/// The cloth at a corner: convex patches, counter-clockwise, and the cuts through the ends of the allowances
-/// before and after it.
+/// Cloth at a corner: convex patches, counter-clockwise, and the cuts through the allowances of the edge
+/// before and of the edge after.
 #[derive(Clone, Debug)]
 pub(crate) struct CornerCloth {
     pub patches: Vec<Vec<Vec2>>,
@@ -109,28 +109,29 @@ pub(crate) struct CornerCloth {
     pub outcome: Outcome,
 }
 
-/// One of the two edges, seen from the corner.
+/// One of the two edges that meet at a corner, as seen from the corner.
 #[derive(Clone, Copy)]
 struct Side {
-    /// Direction in which the edge's seam line runs on beyond the corner: `d` before the corner, `-e` after
-    /// it.
+    /// Direction in which the edge's seam line is extended beyond the corner: `d` for the edge before the
+    /// corner, `-e` for the edge after it.
     out: Vec2,
     normal: Vec2,
     width: f64,
 }
 
-/// The corner between two edges.
+/// A corner between two edges.
 struct Turn {
     before: Side,
     after: Side,
     sin: f64,
     cos: f64,
-    /// Largest distance that the corner's cloth may reach (m).
+    /// Largest distance from the corner that its cloth may reach (m).
     limit: f64,
 }
 
-/// The cloth at a corner between outward normals `n` and `m` with widths `a` and `b`, which reaches up to the
-/// limit times the wider width. `None` where the seam line turns inwards or not at all, or has no allowance.
+/// Cloth at a corner between outward normals `n` and `m` with widths `a` and `b`. It reaches at most `limit`
+/// times the wider width. `None`: the seam line turns inwards or not at all, or neither edge has an
+/// allowance.
 pub(crate) fn corner_cloth(
     (kind, limit): (Corner, f64),
     normals: [Vec2; 2],
@@ -252,7 +253,7 @@ impl Turn {
         }
     }
 
-    /// A mitre, because a corner of the shape asked for would reach this far (m).
+    /// A mitre in place of the shape asked for, which would reach this far (m).
     fn mitre_instead(&self, reach: f64) -> CornerCloth {
         let mitre = self.mitre();
         match mitre.outcome {
@@ -264,7 +265,8 @@ impl Turn {
         }
     }
 
-    /// The seam line of `sewn` runs on to the cut line of `other`, where the allowance of `sewn` ends square.
+    /// The seam line of `sewn` is extended to the cut line of `other`, and there the allowance of `sewn` ends
+    /// square. `trimmed` is the index of `sewn` among the trims.
     fn square(&self, sewn: &Side, other: &Side, trimmed: usize) -> CornerCloth {
         let reach = other.width / self.sin;
         let (end, out) = (sewn.out * reach, sewn.normal * sewn.width);
@@ -320,8 +322,8 @@ impl Turn {
         CornerCloth::limited(vec![Vec2::zeros(), na, e, f, mb], out, self.limit, reach)
     }
 
-    /// The allowance of `hem` is turned up along its seam line. `trimmed` is the number of the hem among the
-    /// trims.
+    /// The allowance of the hem edge `hem` ends so that it lies flush with `other` once it is turned up along
+    /// its seam line. `trimmed` is the index of the hem among the trims.
     fn mirrored(&self, hem: &Side, other: &Side, trimmed: usize) -> CornerCloth {
         // Distance along the hem's extended seam line to the other cut line (m).
         let meet = other.width / self.sin;

@@ -6,12 +6,12 @@ use toile_geometry::{Polygon, Vec2};
 /// The kind of a segment of a cut line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SegmentKind {
-    /// Part of an edge's own cut line, at the edge's width; of an edge of width 0 the edge itself.
+    /// Part of an edge's own cut line, at the edge's width; for an edge of width 0, the edge itself.
     Edge,
-    /// Boundary of the cloth at a dart's mouth; the edge is the leg it lies beside.
+    /// Boundary of the cloth at a dart's mouth; the edge is the leg that the boundary lies beside.
     DartCap,
-    /// A side of a corner's cloth, or the end of an allowance beside a wider one; the edge is the one that
-    /// starts at the corner.
+    /// A side of the cloth of a corner, or the end of an allowance that is wider than the one beside it; the
+    /// edge is the one that starts at the corner.
     Corner,
 }
 
@@ -29,17 +29,18 @@ pub struct Origin {
 pub struct CutRing {
     /// Corners of the ring (m); the first is not repeated.
     pub points: Vec<Vec2>,
-    /// Origin of the segment from each corner to the next, one each.
+    /// Origins of the segments, one for the segment from each corner to the next.
     pub origins: Vec<Origin>,
 }
 
-/// The line that a piece is cut along, the cloth at the left: the outline runs counter-clockwise, holes run
-/// clockwise. No ring crosses itself or another (exact signs); they may touch in a point.
+/// The line that a piece is cut along, with the cloth at its left: the outline runs counter-clockwise, holes
+/// run clockwise. No ring crosses itself or another (tested with exact signs); rings may touch in a point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutLine {
     /// The ring round the piece.
     pub outline: CutRing,
-    /// Rings inside the outline: the remains of the holes, in their order, and bays that have grown shut.
+    /// Rings inside the outline: first the remains of the holes, in their order, then bays whose mouth is
+    /// closed by the allowances.
     pub holes: Vec<CutRing>,
     /// Faults of the cut line.
     pub findings: Vec<Finding>,

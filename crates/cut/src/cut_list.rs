@@ -8,7 +8,7 @@ use toile_pattern::{Draft, Pattern};
 pub struct CutList {
     /// The fabric.
     pub fabric: String,
-    /// Pieces cut from it, in the order of the pattern.
+    /// Pieces cut from the fabric, in the order of the pattern.
     pub pieces: Vec<CutListPiece>,
 }
 
@@ -19,7 +19,7 @@ pub struct CutListPiece {
     pub name: String,
     /// Number of pieces to cut.
     pub quantity: u32,
-    /// Number of pairs among them, one piece of each turned over.
+    /// Number of mirrored pairs among these pieces: one piece of each pair is cut turned over.
     pub pairs: u32,
     /// Area of one piece as cut, holes taken out (m2).
     pub area: f64,
@@ -33,8 +33,8 @@ impl CutList {
     }
 }
 
-/// The cut list of a draft, from the first copy of each panel. Fabrics stand in the order in which the pieces
-/// name them. Further copies among `pieces` are left out.
+/// The cut list of a draft, one list for each fabric, with one entry for the first copy of each panel.
+/// Fabrics are in the order in which the pieces name them. Further copies among `pieces` are left out.
 pub fn cut_list((pattern, draft): (&Pattern, &Draft), pieces: &[CutPiece]) -> Vec<CutList> {
     let mut lists: Vec<CutList> = Vec::new();
     for cut in pieces.iter().filter(|piece| piece.id.copy == 0) {

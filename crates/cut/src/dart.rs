@@ -1,9 +1,9 @@
 //! The mouth of a dart: cloth that lies flush with the edge beside it once the dart is pressed.
 //!
-//! When a dart is sewn shut and pressed to one side, the cloth inside it is folded at the leg it is pressed
-//! towards, and again, backwards, at the fold line half-way between the legs. So the half of the mouth beside
-//! that leg is cut along the mirror image, in the leg, of the neighbour's cut line; the other half is cut
-//! along the mirror image of the first half in the fold line.
+//! When a dart is sewn shut and pressed to one side, the cloth inside it is folded at the leg that it is
+//! pressed towards, and folded back at the fold line half-way between the legs. So the half of the mouth
+//! beside that leg is cut along the mirror image, in the leg, of the cut line of the edge next to it; the
+//! other half is cut along the mirror image of the first half in the fold line.
 
 use crate::chain::{Chain, Tag, corner_tag};
 use crate::ring::{Chord, Ring};
@@ -14,14 +14,15 @@ use toile_geometry::{Polygon, Vec2};
 pub(crate) struct Cap {
     /// The two legs, as edges of the ring.
     pub legs: [usize; 2],
-    /// Outer boundary from the start of the first leg towards the end of the second, whose point is left out.
+    /// Outer boundary from the start of the first leg to the end of the second leg; the end point is left
+    /// out.
     pub roof: Chain,
     /// Cloth between the neighbours' allowances and the extended legs.
     pub patches: Vec<Chain>,
     pub fault: Option<CapFault>,
 }
 
-/// A directed line, with points to its left and right.
+/// A directed line. Points have a side of it: left or right.
 #[derive(Clone, Copy)]
 struct Axis {
     on: Vec2,
@@ -40,19 +41,20 @@ impl Axis {
         self.along.perp(&(p - self.on))
     }
 
-    /// Point of the axis that the line through `p` along `way` meets.
+    /// Point of the axis that the line through `p` in the direction `way` meets.
     fn meet(&self, p: Vec2, way: Vec2) -> Option<Vec2> {
         let t = -self.side(p) / self.along.perp(&way);
         t.is_finite().then(|| p + way * t)
     }
 }
 
-/// Direction of a ring that has this outward normal.
+/// Direction of a ring whose outward normal is `normal`.
 fn along(normal: Vec2) -> Vec2 {
     Vec2::new(-normal.y, normal.x)
 }
 
-/// One side of a dart's mouth: the end of a leg, and the neighbour edge walked away from the dart.
+/// One side of a dart's mouth: the end of a leg, and the neighbour, the edge next to the leg, walked away
+/// from the dart.
 struct Flank {
     /// The leg, as an edge of the ring.
     leg: usize,
@@ -66,7 +68,7 @@ struct Flank {
 }
 
 impl Flank {
-    /// The side before (0) or after (1) the dart with these legs.
+    /// The side of the mouth before (0) or after (1) the dart with these legs.
     fn new(ring: &Ring, legs: [usize; 2], which: usize) -> Self {
         let (leg, neighbour) = match which {
             0 => (legs[0], ring.before(legs[0])),
@@ -113,8 +115,8 @@ impl Flank {
         }
     }
 
-    /// The neighbour's cut line from the extended leg on, and the triangle of cloth that is missing between
-    /// the start of the cut line and the leg.
+    /// The neighbour's cut line from the extended leg on, and the triangle of cloth between the start of the
+    /// cut line and the extended leg that the cut line leaves out.
     fn beyond_leg(&self, axis: Axis) -> Result<(Vec<Vec2>, Option<[Vec2; 3]>), CapFault> {
         let [first, second, ..] = self.offset[..] else {
             return Err(CapFault::NoNeighbour);
@@ -247,7 +249,7 @@ fn folded(
     let across = (far.mouth - near.mouth)
         .try_normalize(1e-9)
         .ok_or(CapFault::NoMeeting)?;
-    // The mirror image in the fold line takes one end of the mouth to the other: with legs of equal lengths
+    // The mirror image in this line maps one end of the mouth to the other; if both legs are equally long,
     // the line runs through the apex.
     let fold = Axis {
         on: (near.mouth + far.mouth) * 0.5,
@@ -274,7 +276,8 @@ fn folded(
         cap_tag(flank.leg)
     });
     let mut tags: Vec<Tag> = tags.collect();
-    // The first and last side lie on the extended legs: they are steps to the neighbours' allowances.
+    // The first and last side lie on the extended legs: they are steps to the allowances of the neighbour
+    // edges.
     let corner = |which: usize| corner_tag(ring, [legs[0], ring.after(legs[1])][which]);
     if let [first, .., last] = &mut tags[..] {
         (*first, *last) = (corner(pressed), corner(1 - pressed));
@@ -293,7 +296,7 @@ fn folded(
     Ok((Chain { points, tags }, patches))
 }
 
-/// The points of a path up to a line, and the point where the path meets it.
+/// The points of a path before it meets a line, and the point where it meets the line.
 fn up_to(path: Vec<Vec2>, line: Axis) -> Result<Vec<Vec2>, CapFault> {
     let sign = line.side(path[0]).signum();
     let crossed = path.iter().position(|&p| line.side(p) * sign <= 0.0);
@@ -310,7 +313,8 @@ fn up_to(path: Vec<Vec2>, line: Axis) -> Result<Vec<Vec2>, CapFault> {
     Ok(kept)
 }
 
-/// Points of the legs, backwards from the end of the second to the start of the first, both left out.
+/// Points of the two legs, walked backwards from the end of the second leg to the start of the first; both of
+/// these end points are left out.
 fn apex_side(ring: &Ring, legs: [usize; 2]) -> Vec<Vec2> {
     let mut points: Vec<Vec2> = legs
         .iter()

@@ -80,15 +80,15 @@ pub struct Drawing {
 /// The text to write on a piece, with limits on its size and place.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Writing<'w> {
-    /// Lines of text, the first one largest.
+    /// Lines of text, the first one in the largest letters.
     pub lines: &'w [&'w str],
-    /// Largest height of letters (m), if they are to be smaller than usual.
+    /// Largest height of letters (m); `None`: the usual height.
     pub most: Option<f64>,
     /// Lines that words must not lie on, besides the lines of the piece (m).
     pub clear_of: &'w [[Vec2; 2]],
 }
 
-/// Height of letters on the largest and on the smallest pieces (m).
+/// Height of letters on the largest pieces and on the smallest (m).
 const LETTERS: [f64; 2] = [0.022, 0.004];
 /// Arm of the cross at the end of a dart (m).
 const DRILL: f64 = 0.003;
@@ -102,7 +102,7 @@ impl StrokeKind {
 
 impl CutPiece {
     /// Drawing of the piece. `place` maps points of the piece to points of the drawing: moved, turned, turned
-    /// over or scaled. `lines` are written on it, the first one largest.
+    /// over or scaled. The texts `lines` are written on the piece, the first one in the largest letters.
     pub fn drawing(&self, place: impl Fn(Vec2) -> Vec2, lines: &[&str]) -> Drawing {
         let writing = Writing {
             lines,
@@ -111,7 +111,7 @@ impl CutPiece {
         self.drawing_with(place, &writing)
     }
 
-    /// [`Self::drawing`] with the size and place of the words limited too.
+    /// [`Self::drawing`] with limits on the size and place of the words.
     pub fn drawing_with(&self, place: impl Fn(Vec2) -> Vec2, writing: &Writing<'_>) -> Drawing {
         let placed = |points: &[Vec2]| points.iter().map(|&p| place(p)).collect::<Vec<Vec2>>();
         let mut strokes = Vec::new();
@@ -157,7 +157,7 @@ impl CutPiece {
             }
         }
         let polygon = self.polygon().mapped(&place);
-        // Words and grain line keep clear of seam lines and darts if the seam lines are known.
+        // Words and grain line lie inside the seam lines and clear of darts if the seam lines are known.
         let inner = match self.sew.is_empty() {
             true => polygon.clone(),
             false => self.sewn().mapped(&place),
@@ -182,14 +182,14 @@ impl CutPiece {
         }
     }
 
-    /// Notches of the piece, only one of those that look alike.
+    /// Notches of the piece; of notches that look alike only the first.
     pub fn notches_seen(&self) -> impl Iterator<Item = &CutNotch> {
         let seen = self.notches.iter().enumerate();
         seen.filter(|(k, notch)| !self.notches[..*k].iter().any(|n| n.looks_like(notch)))
             .map(|(_, notch)| notch)
     }
 
-    /// The grain line at the spot of a label, above its words or alone, and its arrow head.
+    /// The grain line and its arrow head, at the place of a label: above the words, or alone in the middle.
     fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, label: &Label) -> Vec<Vec<Vec2>> {
         let spot = &label.spot;
         let along = Vec2::new(self.grain.cos(), self.grain.sin());
@@ -197,8 +197,8 @@ impl CutPiece {
         let Some(way) = way.filter(|_| spot.room > 0.0) else {
             return Vec::new();
         };
-        // The whole arrow lies inside the free circle round the spot, and above the words if they are at the
-        // spot.
+        // The whole arrow lies inside the free circle round the spot, and above the words if the words are at
+        // the spot.
         let (centre, reach) = match label.above {
             true => {
                 let up = label.words.first().map_or(Vec2::y(), Words::up);
@@ -217,7 +217,7 @@ impl CutPiece {
     }
 }
 
-/// The lines that words keep clear of, besides the outline.
+/// Lines that words keep clear of, other than the outline.
 fn inner_lines(strokes: &[Stroke]) -> Vec<[Vec2; 2]> {
     use StrokeKind::{Drill, Inside, Mark, Notch};
     let inner = |s: &&Stroke| matches!(s.kind, Inside | Notch | Mark | Drill);
@@ -227,8 +227,8 @@ fn inner_lines(strokes: &[Stroke]) -> Vec<[Vec2; 2]> {
         .collect()
 }
 
-/// A closed line whole, or the parts of it that do not lie on the fold of the cloth: corners, segments, and
-/// whether it is closed.
+/// A closed line as a whole, or, where it lies partly on the fold of the cloth, the parts off the fold. Each
+/// part has corners, segments, and whether it is closed.
 fn off_the_fold(ring: &PieceRing) -> Vec<(Vec<Vec2>, Vec<PieceSegment>, bool)> {
     let count = ring.points.len();
     let on_fold = |k: usize| ring.segments[k % count] == PieceSegment::Fold;

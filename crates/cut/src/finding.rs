@@ -7,12 +7,12 @@ use toile_pattern::NotchId;
 /// Reason why the mouth of a dart is cut straight across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CapFault {
-    /// The edge that the dart is pressed towards is a leg of a dart too.
+    /// The neighbour, the edge next to the leg that the dart is pressed towards, is a leg of a dart too.
     NoNeighbour,
     /// The leg runs along the neighbour's cut line or nearly so, or the mouth has no width.
     NoMeeting,
-    /// The neighbour is too short, or the dart too wide: the mirror image of the cut line does
-    /// not come to the fold line.
+    /// The neighbour edge is too short, or the dart too wide: the mirror image of the cut line does not reach
+    /// the fold line.
     TooShort,
     /// The cap would cross the dart's legs or itself.
     Crossing,
@@ -21,33 +21,33 @@ pub enum CapFault {
 /// A fault of a cut line. Places along an edge are measured from the start of the edge as given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// Along a span of an edge the edge's own cut line is missing, because other cloth or allowance lies
-    /// there: the piece is cut farther out.
+    /// Part of an edge has no cut line of its own, because other cloth or allowance lies there: the piece is
+    /// cut farther out.
     Swallowed {
         /// The edge.
         edge: EdgeIndex,
-        /// The span, from and to (m).
+        /// Start and end of that part (m).
         span: [f64; 2],
-        /// Whether the span starts or ends at an inner corner or a dart, where allowances always overlap.
+        /// Whether the part starts or ends at an inner corner or a dart, where allowances always overlap.
         inner_corner: bool,
     },
-    /// Along a span of an edge the allowance, measured square to the seam line, is narrower than asked: a
-    /// corner takes some of it.
+    /// On part of an edge the allowance, measured square to the seam line, is narrower than asked, because
+    /// the shape of a corner cuts it.
     Narrow {
         /// The edge.
         edge: EdgeIndex,
-        /// The span, from and to (m).
+        /// Start and end of that part (m).
         span: [f64; 2],
-        /// Least width (m).
+        /// Least width of the allowance there (m).
         least: f64,
     },
     /// A corner is too sharp for its allowance and cut off.
     CutOff {
         /// The edge that starts at the corner.
         corner: EdgeIndex,
-        /// Distance from the seam line's corner that the cut line would reach (m).
+        /// Distance from the seam line's corner that the uncut corner would reach (m).
         asked: f64,
-        /// Distance that it reaches (m).
+        /// Distance from the seam line's corner at which it is cut off (m).
         kept: f64,
     },
     /// A corner is too blunt for the shape asked, which would reach too far, and is mitred.
@@ -57,9 +57,9 @@ pub enum Finding {
         /// Distance from the seam line's corner that the shape asked would reach (m).
         asked: f64,
     },
-    /// The allowances of a slit's sides meet: it is not cut open.
+    /// The allowances along the two sides of a slit overlap: the slit is not cut open.
     SlitShut {
-        /// The edges at the slit's mouth, in the cloth's order.
+        /// The edges at the two ends of the slit's mouth, in counter-clockwise order round the piece.
         edges: [EdgeIndex; 2],
         /// Middle of the mouth on the seam line (m).
         mouth: Vec2,
@@ -68,14 +68,15 @@ pub enum Finding {
         /// Length of seam line shut in (m).
         length: f64,
     },
-    /// The allowances round a bay meet at its mouth and leave a hole in the piece.
+    /// The allowances round a bay of the outline meet at its mouth, so that the bay becomes a hole in the
+    /// piece.
     BayShut {
         /// Number of the hole in [`crate::CutLine::holes`].
         hole: usize,
         /// Area of the hole (m2).
         area: f64,
     },
-    /// A hole is filled by its allowance, or falls into parts.
+    /// A hole is filled by its allowance, or divided into parts.
     HoleShut {
         /// Number of the hole in the seam line.
         hole: usize,
@@ -86,7 +87,7 @@ pub enum Finding {
     StraightCap {
         /// Number of the dart.
         dart: usize,
-        /// Reason.
+        /// Reason why it is not shaped by folding.
         fault: CapFault,
     },
     /// Notches are cut less deep than usual, as the allowance is narrower.

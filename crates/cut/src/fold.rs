@@ -6,27 +6,27 @@ use toile_geometry::{
     Bounds2, EdgeTree, Polygon, Vec2, intersection, point_segment_distance, total_area,
 };
 
-/// Largest difference of outlines that count as the same (share of their area).
+/// Largest difference between outlines that count as equal (share of their area).
 const SAME_SHAPE: f64 = 1e-4;
-/// Sine of the largest angle between directions that count as the same (1).
+/// Sine of the largest angle between directions that count as equal (1).
 const SAME_WAY: f64 = 1e-6;
-/// Largest distance from a line of points that count as on it (m): some steps of the grid that halves are cut
-/// on.
+/// Largest distance from a line at which a point counts as on the line (m): some steps of the grid on which
+/// halves are cut.
 const ON_LINE: f64 = 1e-6;
 
 impl HalfPlane {
-    /// Whether the line runs along a direction (rad).
+    /// Whether the border line runs in this direction or against it (rad).
     pub fn runs_along(&self, direction: f64) -> bool {
         let (sin, cos) = direction.sin_cos();
         self.inward.dot(&Vec2::new(cos, sin)).abs() < SAME_WAY
     }
 
-    /// Distance of a point inside the border of the half-plane (m).
+    /// Distance of a point from the border of the half-plane, positive inside (m).
     fn depth(&self, point: Vec2) -> f64 {
         (point - self.at).dot(&self.inward)
     }
 
-    /// Whether a point is kept, also on the border.
+    /// Whether a point lies inside the half-plane or on its border.
     fn keeps(&self, point: Vec2) -> bool {
         self.depth(point) >= -ON_LINE
     }
@@ -46,7 +46,7 @@ impl HalfPlane {
         largest.unwrap_or_else(|| Polygon::new(Vec::new()))
     }
 
-    /// The part of rings inside the half-plane; each segment keeps the name it had.
+    /// The part of the rings inside the half-plane; each segment keeps its name.
     fn cut_rings(&self, rings: &[PieceRing]) -> Vec<PieceRing> {
         let polygon = Polygon {
             outer: rings.first().map_or_else(Vec::new, |r| r.points.clone()),
@@ -80,7 +80,7 @@ impl HalfPlane {
         self.cut(&polygon).rings().map(of).collect()
     }
 
-    /// A polyline whole if all of it lies inside or on the border, else the parts of it that are inside.
+    /// The whole polyline if all of it lies inside or on the border, else the parts of it that lie inside.
     fn kept(&self, points: &[Vec2]) -> Vec<Vec<Vec2>> {
         match points.iter().all(|&p| self.keeps(p)) {
             true => vec![points.to_vec()],
@@ -180,19 +180,20 @@ impl CutPiece {
         (outer.area() - shared).abs() <= SAME_SHAPE * outer.area()
     }
 
-    /// Whether another piece is this one turned over across the grain.
+    /// Whether this piece has the shape of `other` turned over across the grain.
     pub fn is_mirror_image_of(&self, other: &Self) -> bool {
         are_mirror_images(&self.straightened(), &other.straightened())
     }
 
-    /// Outline with the grain along +x and the lower corner of its box at the origin.
+    /// Outline turned so that the grain runs along +x, and moved so that the lower corner of its box is the
+    /// origin.
     fn straightened(&self) -> Polygon {
         let straight = self.outer().rotated(-self.grain);
         straight.translated(-straight.bounds().min)
     }
 }
 
-/// Whether one straightened outline is the other turned over across the grain.
+/// Whether one straightened outline is the mirror image of the other across the grain.
 fn are_mirror_images(a: &Polygon, b: &Polygon) -> bool {
     let (one, other): (Bounds2, Bounds2) = (a.bounds(), b.bounds());
     let area = a.area();

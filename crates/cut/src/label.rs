@@ -10,11 +10,11 @@ const CELLS: u32 = 24;
 pub(crate) struct Spot {
     /// Position (m).
     pub at: Vec2,
-    /// Distance to the nearest line (m); 0 where there is no room.
+    /// Distance to the nearest line (m); 0 if there is no room.
     pub room: f64,
 }
 
-/// The points of a grid that lie inside a polygon.
+/// Centres of the cells of a grid that lie inside a polygon (m).
 pub(crate) fn cells(polygon: &Polygon) -> Vec<Vec2> {
     let bounds = polygon.bounds();
     let all = (0..CELLS * CELLS).map(|k| {
@@ -24,7 +24,7 @@ pub(crate) fn cells(polygon: &Polygon) -> Vec<Vec2> {
     all.filter(|&point| polygon.contains(point)).collect()
 }
 
-/// The point, among some inside a polygon, that lies far from lines and near the middle of the polygon's box.
+/// The point among `cells` that is far from all lines and near the middle of the polygon's box.
 pub(crate) fn roomiest_of(polygon: &Polygon, cells: &[Vec2], lines: &[[Vec2; 2]]) -> Spot {
     let bounds = polygon.bounds();
     let centre = bounds.centre();

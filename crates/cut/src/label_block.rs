@@ -5,28 +5,30 @@ use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_lettering::{shortened, width};
 
-/// Size of the lines after the first, over the size of the first.
+/// Ratio of the size of the second and later lines to the size of the first line (1).
 const LATER_LINES: f64 = 0.7;
-/// Distance from one baseline to the next, over the size of the lower line.
+/// Ratio of the distance between two baselines to the size of the lower line (1).
 const LINE_STEP: f64 = 1.3;
-/// Height of letters above and below the baseline, over their size.
+/// Height of letters above and below the baseline, over the size of the letters (1).
 const ASCENT: f64 = 0.8;
 const DESCENT: f64 = 0.25;
-/// Share of a free length that words take: fonts of other programs are wider.
+/// Share of a free length that words may take (1): fonts of other programs are wider.
 const FILLED: f64 = 0.85;
-/// Gap between the spot and the words below it, and height of those words, over the spot's distance to the
-/// outline.
+/// Gap between the spot (place of the grain line) and the words below it, and height of these words; both
+/// over the spot's distance to the outline (1).
 const GAP: f64 = 0.05;
 const LINES: f64 = 0.85;
-/// Size of letters that are read with ease (m); words stand by the grain line if they are no smaller.
+/// Smallest letters that are easy to read (m). Words stand by the grain line only if their letters are at
+/// least this large.
 const EASY: f64 = 0.003;
 /// Smallest letters (m): below this size words are shortened instead.
 const SMALL: f64 = 0.0018;
-/// Least length of a shortened line, over the size of its letters.
+/// Least length of a shortened line, over the size of its letters (1).
 const SHORTEST: f64 = 3.0;
-/// Factor by which upright words must be larger to be chosen: they are read less well.
+/// Factor by which upright words must be larger than level words to be chosen, as they are harder to read
+/// (1).
 const UPRIGHT: f64 = 1.6;
-/// Smallest size of letters that counts as room (m).
+/// Smallest size of letters for which a place counts as free (m).
 const LEAST: f64 = 1e-6;
 /// Number of bisections in the search for the largest size.
 const STEPS: u32 = 12;
@@ -40,7 +42,7 @@ pub struct Words {
     pub at: Vec2,
     /// Height of the letters (m).
     pub size: f64,
-    /// Direction of the baseline (rad): 0 or upwards.
+    /// Direction of the baseline (rad): 0, or a right angle for words that read upwards.
     pub angle: f64,
 }
 
@@ -59,7 +61,7 @@ impl Words {
     }
 }
 
-/// The room for words in a piece.
+/// Free room for words in a piece.
 struct Room<'r> {
     /// Candidate places inside the piece, on a grid (m).
     cells: &'r [Vec2],
@@ -67,7 +69,7 @@ struct Room<'r> {
     lines: &'r [[Vec2; 2]],
 }
 
-/// Lines of words to be set below one another.
+/// Lines of words that are set one below the other.
 struct Block<'w> {
     lines: Vec<&'w str>,
 }
@@ -84,14 +86,14 @@ fn share(line: usize) -> f64 {
     if line == 0 { 1.0 } else { LATER_LINES }
 }
 
-/// Height of a block of lines over the size of the first.
+/// Height of a block of lines, over the size of the first line (1).
 fn height(count: usize) -> f64 {
     let last = share(count.saturating_sub(1));
     ASCENT + LINE_STEP * LATER_LINES * (count.max(1) - 1) as f64 + DESCENT * last
 }
 
 impl Block<'_> {
-    /// Width of the block over the size of the first line, with allowance for wider fonts.
+    /// Width of the block, over the size of the first line (1), with allowance for wider fonts.
     fn width(&self) -> f64 {
         let widths = self.lines.iter().enumerate();
         widths
@@ -130,8 +132,9 @@ impl Room<'_> {
         !self.lines.iter().any(|&line| enters(line, &bounds))
     }
 
-    /// The largest number up to `most` for which a box of half size `half` is free at some place; of places
-    /// that are alike, the one nearest to `near`. Boxes turned upright swap their sides.
+    /// The largest size up to `most` (m) for which the box with the half extent `half(size)` is free at some
+    /// place. Of equal places the one nearest to `near` is taken. The box of upright words has its sides
+    /// swapped.
     fn largest(&self, near: Vec2, most: f64, half: impl Fn(f64) -> Vec2) -> Option<Fit> {
         let mut best: Option<Fit> = None;
         for &at in self.cells {
@@ -157,7 +160,7 @@ impl Room<'_> {
         best
     }
 
-    /// Lines of words below a spot, if there is room there for letters that are read with ease.
+    /// Lines of words below a spot. `None`: there is no room for letters that are easy to read.
     fn below(&self, spot: &Spot, block: &Block<'_>, most: f64) -> Option<Vec<Words>> {
         let half = Vec2::new(block.width(), height(block.lines.len())) * 0.5;
         let most = most.min(LINES * spot.room / (2.0 * half.y));
@@ -184,8 +187,9 @@ impl Room<'_> {
         self.largest(near, most, |size| whole * size)
     }
 
-    /// Lines of words somewhere inside, the first in letters of at most this size (m). They are smaller,
-    /// upright or shortened where they must be, and end with an ellipsis where they are cut.
+    /// Lines of words anywhere inside, with the first line in letters of size `most` at most (m), near `near`
+    /// if possible. If there is too little room, letters are smaller, upright or shortened; a line that is
+    /// cut ends with an ellipsis.
     fn words(&self, lines: &[&str], (near, most): (Vec2, f64)) -> Vec<Words> {
         let block = Block {
             lines: lines.to_vec(),
@@ -213,8 +217,8 @@ impl Room<'_> {
     }
 }
 
-/// The first lines, each no longer than a length (m); an ellipsis ends a line that is cut, and the last one
-/// if further lines are left out.
+/// The first `count` lines, each at most `length` long (m). An ellipsis ends a line that is cut, and also the
+/// last line if further lines are left out.
 fn shortened_block(lines: &[&str], count: usize, (length, fit): (f64, Fit)) -> Vec<Words> {
     let short: Vec<String> = lines[..count]
         .iter()
@@ -235,8 +239,8 @@ fn shortened_block(lines: &[&str], count: usize, (length, fit): (f64, Fit)) -> V
     block.placed(fit)
 }
 
-/// The largest number between two for which a box that grows with it is free; the box of the smaller number
-/// is known to be free.
+/// The largest number between `fits` and `most` for which the box of that size is free, found by bisection.
+/// The box of size `fits` is known to be free.
 fn grown([mut fits, most]: [f64; 2], is_free: impl Fn(f64) -> bool) -> f64 {
     if is_free(most) {
         return most;
@@ -279,15 +283,15 @@ fn enters([from, to]: [Vec2; 2], bounds: &Bounds2) -> bool {
 /// The words of a piece, and the place of its grain line.
 pub(crate) struct Label {
     pub words: Vec<Words>,
-    /// Free place of the grain line: above the words if they are below the spot, in the middle of the spot if
-    /// they lie elsewhere.
+    /// Free place for the grain line: above the words if the words are below the spot, in the middle of the
+    /// spot if the words lie elsewhere.
     pub spot: Spot,
     pub above: bool,
 }
 
-/// Lines of words inside a polygon, clear of other lines. They stand at the roomiest spot, with the grain
-/// line above them, if letters there are read with ease; else wherever they fit best. `most` gives the
-/// largest letters of the first line at a spot (m).
+/// Lines of words inside a polygon, clear of the lines `others`. They stand at the roomiest spot, with the
+/// grain line above them, if letters there are easy to read; else wherever they fit best. `most` gives the
+/// size of the largest letters of the first line at a spot (m).
 pub(crate) fn label(
     polygon: &Polygon,
     others: &[[Vec2; 2]],
@@ -316,7 +320,7 @@ pub(crate) fn label(
     if let Some(words) = clear.below(&spot, &block, most) {
         return by_the_spot(words);
     }
-    // Words that lie on an inner line are better than words that are cut.
+    // It is better that words lie on an inner line than that they are cut.
     let fit = clear.fit(&block, (spot.at, most));
     let crowded = fit.is_none_or(|fit| fit.size < SMALL.min(most));
     let words = if crowded { &free } else { &clear }.words(lines, (spot.at, most));

@@ -6,7 +6,8 @@ use toile_pattern::{EdgeOrigin, NotchId, NotchKind};
 /// Depth of a notch (m): visible at arm's length, and well within an allowance of 10 mm.
 pub const NOTCH_DEPTH: f64 = 0.006;
 
-/// A notch of a cut piece. At a corner of the seam line there is one for each cut line that meets there.
+/// A notch of a cut piece. A notch at a corner of the seam line is listed once for each cut line that meets
+/// there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutNotch {
     /// The notch of the panel.
@@ -19,8 +20,9 @@ pub struct CutNotch {
     pub point: Vec2,
     /// Unit vector into the piece.
     pub inward: Vec2,
-    /// Place on the edge's cut line (m): straight out from the seam line, or, at a corner, the point where
-    /// the other edge's extended seam line meets the cut line. Equal to `point` if there is no such place.
+    /// Place on the cut line of the edge (m): straight out from the seam line, or, at a corner, the point
+    /// where the other edge's extended seam line meets the cut line. Equal to `point` if no such place
+    /// exists.
     pub on_cut: Vec2,
     /// Unit vector along the edge as drawn: a check mark slopes to this side.
     pub along: Vec2,
@@ -40,8 +42,8 @@ impl CutNotch {
         shape(self.kind).iter().map(line).collect()
     }
 
-    /// Whether the notch looks the same as another at the same place: at an inner corner, where edges
-    /// continue straight into each other, and on a fold.
+    /// Whether the notch looks the same as another at the same place. This happens at an inner corner, where
+    /// two edges continue straight into each other, and on a fold.
     pub(crate) fn looks_like(&self, other: &Self) -> bool {
         const SAME: f64 = 1e-6;
         let same = |a: Vec2, b: Vec2| (a - b).norm() < SAME;
@@ -56,7 +58,7 @@ impl CutNotch {
     }
 }
 
-/// The lines of a kind of notch at depth 1: coordinates along the edge, and inwards from it.
+/// The lines of a kind of notch for depth 1: coordinates along the edge and inwards from the edge.
 pub(crate) fn shape(kind: NotchKind) -> Vec<Vec<[f64; 2]>> {
     match kind {
         NotchKind::Slit => vec![vec![[0.0, 0.0], [0.0, 1.0]]],

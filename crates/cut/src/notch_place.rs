@@ -7,14 +7,14 @@ use crate::seams::{NamedSeam, Plane};
 use toile_geometry::{Vec2, ring_area};
 use toile_pattern::{EdgeOrigin, Piece, PieceNotch};
 
-/// Largest distance between a corner of the seam line and a notch that counts as at the corner (m).
+/// Largest distance from a corner of the seam line at which a notch counts as at the corner (m).
 pub(crate) const AT_CORNER: f64 = 1e-6;
 
-/// Directions and allowance at a point of an edge.
+/// Directions and allowance of an edge at one of its points.
 #[derive(Clone, Copy)]
 struct Side {
     edge: EdgeOrigin,
-    /// Unit vector along the edge, in the order of the loop.
+    /// Unit vector along the edge, in walking order of the loop.
     way: Vec2,
     /// Unit vector away from the cloth.
     out: Vec2,
@@ -28,14 +28,15 @@ pub(crate) struct Corner {
     after: Side,
 }
 
-/// A notch's edge, the vector from the seam line to the cut line (m), and the unit vector into the piece.
+/// Frame for a notch: its edge, the vector from the seam line to the cut line (m), and the unit vector into
+/// the piece.
 struct Stand {
     edge: EdgeOrigin,
     outwards: Vec2,
     inward: Vec2,
 }
 
-/// The notches of a piece, cut as deep as their room allows.
+/// The notches of a piece, each cut as deep as there is room for.
 pub(crate) fn notches_of(
     piece: &Piece,
     plane: &Plane,
@@ -71,7 +72,7 @@ fn cut_notch(
     let all = piece.outline.iter().chain(piece.holes.iter().flatten());
     let mut edges = all.filter(|edge| edge.origin == stand.edge);
     let reversed = edges.next().is_some_and(|edge| edge.reversed);
-    // The cloth is at the left of the outline as drawn.
+    // The cloth lies at the left of the outline as drawn.
     let along = |inward: Vec2| Vec2::new(inward.y, -inward.x) * if reversed { -1.0 } else { 1.0 };
     let mut made = CutNotch {
         id: notch.id,
@@ -96,7 +97,7 @@ fn cut_notch(
     made
 }
 
-/// A notch within an edge: square to the seam line.
+/// Frame of a notch within an edge: square to the seam line.
 fn straight_out(notch: &PieceNotch, plane: &Plane, seam: &NamedSeam) -> Stand {
     let inward = plane.normal(notch.inward);
     Stand {
@@ -106,11 +107,11 @@ fn straight_out(notch: &PieceNotch, plane: &Plane, seam: &NamedSeam) -> Stand {
     }
 }
 
-/// The corner of a seam line at a point, if two edges meet there.
+/// The corner of a seam line at a point; `None`: no two edges meet there.
 pub(crate) fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
     for (number, (edges, names)) in seam.loops().enumerate() {
         let corners: Vec<Vec2> = edges.iter().flat_map(|e| e.curve.flatten(1e-3)).collect();
-        // Outlines run counter-clockwise round the cloth and holes clockwise, or both the other way round.
+        // The outline runs counter-clockwise and holes clockwise, or both the other way round.
         let is_hole = number > 0;
         let sign = match (ring_area(&corners) < 0.0) == is_hole {
             true => 1.0,
@@ -138,8 +139,8 @@ pub(crate) fn corner_at(seam: &NamedSeam, point: Vec2) -> Option<Corner> {
 }
 
 impl Corner {
-    /// The stands of a notch at the corner: one for each side that is not a dart's leg; if both are legs, one
-    /// on `edge`.
+    /// Frames for a notch at the corner: one for each of the two edges that is not a leg of a dart; if both
+    /// are legs, one frame for `edge`.
     fn stands(&self, edge: EdgeOrigin) -> Vec<Stand> {
         let (a, b) = (self.before, self.after);
         let inward = -(a.out + b.out).try_normalize(1e-6).unwrap_or(a.out);
@@ -170,9 +171,9 @@ impl Corner {
         stands.map(|stand| stand.outwards).collect()
     }
 
-    /// Vector from the corner to the cut line of a side (m): along the other side's extended seam line. At an
-    /// inner corner, and at a blunt one, where that point is far away: to the point where both cut lines
-    /// meet.
+    /// Vector from the corner to the cut line of the edge of `side` (m), along the extended seam line of the
+    /// other edge. At an inner corner, and at a blunt one where that point is far away, the vector leads to
+    /// the point where both cut lines meet.
     fn outwards(&self, side: Side, drawn_on: Vec2) -> Vec2 {
         let (sin, cos) = (
             -self.before.out.dot(&self.after.way),
@@ -186,7 +187,7 @@ impl Corner {
         drawn_on * (side.width / rise.max(1e-9)).min(MITRE_LIMIT * side.width)
     }
 
-    /// Vector from the corner to the point where both cut lines meet (m), unless that is far away.
+    /// Vector from the corner to the point where both cut lines meet (m); `None`: the point is far away.
     fn meeting(&self) -> Option<Vec2> {
         let (n, m) = (self.before.out, self.after.out);
         let (p, q) = (self.before.width, self.after.width);

@@ -7,22 +7,24 @@ use toile_geometry::{
 };
 use toile_pattern::NotchKind;
 
-/// Largest share of the allowance that a notch is cut into: the rest is sewn.
+/// Largest depth of a notch, over the width of the allowance (1): some allowance must be left between notch
+/// and seam.
 const MAX_ALLOWANCE_SHARE: f64 = 0.6;
-/// Least distance between a notch and the sewn cloth, over the depth of the notch: the allowance left beside
-/// the deepest notch.
+/// Least distance between a notch and the sewn cloth, over the depth of the notch (1): the share of allowance
+/// that the deepest notch leaves.
 const CLEAR: f64 = 0.66;
-/// Least distance between the bottom of a notch and the cut line, over the depth of the notch.
+/// Least distance between the bottom of a notch and the cut line, over the depth of the notch (1).
 const WITHIN: f64 = 0.3;
-/// Ratio of each depth tried to the one before.
+/// Ratio of each depth that is tried to the depth tried before (1).
 const SHALLOWER: f64 = 0.85;
 /// Least depth of a notch (m): a shallower one is no wider than the cut of a knife.
 const LEAST: f64 = 0.000_25;
 /// Largest distance from the seam line at which a cut line is looked for (m).
 const REACH: f64 = 0.5;
-/// Cut lines nearer to the seam line than this coincide with it, but for flattening (m).
+/// Cut lines nearer to the seam line than this count as equal to it (m): the difference comes from
+/// flattening.
 const ON_SEAM: f64 = 1e-4;
-/// Largest distance of a point that counts as on the cut line (m).
+/// Largest distance from the cut line at which a point counts as on it (m).
 const ON_CUT: f64 = 2e-5;
 
 /// A piece's cut line, and the cloth inside its seam lines.
@@ -39,8 +41,8 @@ struct Near<'a> {
 }
 
 impl Room {
-    /// Point of the cut line for a notch at `from`, on a cut line expected at `from + outwards` (m). `None`
-    /// where there is no cut line or other sewn cloth lies before it.
+    /// Point of the cut line for a notch at `from` on the seam line; the cut line is expected at `from +
+    /// outwards` (m). `None`: there is no cut line, or other sewn cloth lies before it.
     pub fn cut_line(&self, from: Vec2, outwards: Vec2) -> Option<Vec2> {
         let at = self
             .there(from + outwards)
@@ -52,7 +54,7 @@ impl Room {
         (length <= ON_SEAM || !self.sewn.edges().any(blocked)).then_some(at)
     }
 
-    /// The nearest point of the cut line, if the line passes through `place`.
+    /// Point of the cut line nearest to `place`; `None`: the cut line does not pass through `place`.
     fn there(&self, place: Vec2) -> Option<Vec2> {
         let away = |at: &Vec2| (at - place).norm();
         let nearest = self.cut.edges().map(|edge| closest_on_segment(place, edge));
@@ -60,7 +62,7 @@ impl Room {
         nearest.filter(|at| away(at) <= ON_CUT)
     }
 
-    /// The first point at which a ray meets the cut line.
+    /// The first point at which the ray from `from` in the direction `way` meets the cut line.
     fn outwards(&self, from: Vec2, way: Vec2) -> Option<Vec2> {
         let way = way.try_normalize(1e-9)?;
         let mut nearest = REACH;
@@ -79,9 +81,9 @@ impl Room {
         (nearest < REACH).then(|| from + way * nearest.max(0.0))
     }
 
-    /// Depth to which a notch can be cut, and its lines. `point` is its place on the seam line, `at` its
-    /// place on the cut line, `axes` are unit vectors along the cut line and inwards. `None` where no
-    /// allowance is wide enough.
+    /// Depth to which a notch can be cut (m), and the lines to cut. `point` is the notch's place on the seam
+    /// line, `at` its place on the cut line; `axes` are unit vectors along the cut line and inwards. `None`:
+    /// the allowance is not wide enough.
     pub fn cut(
         &self,
         kind: NotchKind,
@@ -118,7 +120,7 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// The lines of a notch of this depth, if all of them lie in the allowance.
+    /// The lines of a notch of this depth; `None`: some of them leave the allowance.
     fn lines(
         &self,
         kind: NotchKind,
@@ -149,8 +151,8 @@ impl<'a> Near<'a> {
         Some(lines)
     }
 
-    /// The point of the cut line straight outwards or inwards from a place that should be on it, at most 0.9
-    /// `inwards` away (m).
+    /// The point of the cut line straight outwards or inwards from `place`, which should be on it: at most
+    /// 0.9 times the vector `inwards` away (m).
     fn on_cut_line(&self, place: Vec2, inwards: Vec2) -> Option<Vec2> {
         let (from, to) = (place + inwards * 0.9, place - inwards * 0.9);
         let way = to - from;
@@ -174,8 +176,8 @@ impl<'a> Near<'a> {
         self.room.cut.contains(place) && !self.cut.iter().any(near)
     }
 
-    /// Whether a line from or to the cut line crosses it nowhere else, and keeps at least this far from the
-    /// sewn cloth (m).
+    /// Whether a line that starts or ends on the cut line crosses it nowhere else, and keeps the distance
+    /// `far` from the sewn cloth (m).
     fn is_clear(&self, line: [Vec2; 2], far: f64) -> bool {
         let short = (line[1] - line[0]) * 0.02;
         let inner = [line[0] + short, line[1] - short];

@@ -1,6 +1,6 @@
 //! Options of cut pieces that the pattern does not give: shrinkage, and cloth for fusing.
 
-/// Shares of its length that a cloth loses when it is washed.
+/// Shrinkage of a cloth when it is washed, as shares of its length.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shrinkage {
     /// Share lost along the warp, below 1; 0.03 for 3 %.
@@ -9,7 +9,7 @@ pub struct Shrinkage {
     pub weft: f64,
 }
 
-/// Largest share that cloth can lose or gain, beyond any that was measured.
+/// Largest share that cloth may shrink or grow; no measured cloth comes near it.
 const MAX_SHRINKAGE: f64 = 0.5;
 
 impl Shrinkage {
@@ -19,8 +19,8 @@ impl Shrinkage {
         sound(self.warp) && sound(self.weft)
     }
 
-    /// Factors by which a piece is enlarged along the warp and the weft, so that it has its size after
-    /// washing.
+    /// Factors by which a piece is enlarged along the warp and the weft, so that it has the drafted size
+    /// after washing.
     pub fn factors(&self) -> [f64; 2] {
         [self.warp, self.weft].map(|share| 1.0 / (1.0 - share))
     }
@@ -29,8 +29,9 @@ impl Shrinkage {
 /// Options of cut pieces that the pattern does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CutOptions {
-    /// Shrinkage of the cloth in the wash. The seam line grows; allowances keep their widths.
+    /// Shrinkage of the cloth when washed. The seam line is enlarged for it; allowances keep their widths.
     pub shrinkage: Shrinkage,
-    /// Width of the cloth all round beyond the allowances (m), for pieces that are cut again after fusing.
+    /// Width of the extra cloth all round beyond the allowances (m), for pieces that are fused and then cut
+    /// again.
     pub block: f64,
 }

@@ -21,11 +21,11 @@ use crate::uncovered::{covered, uncovered_findings};
 use crate::{CutError, CutLine, CutRing, Finding, SeamLine};
 use toile_geometry::{CrossingKind, Polygon, Vec2};
 
-/// The cut line of a piece: its seam line, darts capped, grown by the allowance of each edge.
+/// The cut line of a piece: its seam line with darts capped, grown by the allowance of each edge.
 ///
 /// Curves are flattened to [`crate::FLATNESS`]; corners of the result are accurate to about 4e-9 of the
-/// piece's extent. A loop in which no edge has a width is returned as flattened, and everywhere the corners
-/// that the union leaves in place keep their coordinates to the bit.
+/// piece's extent. A loop in which no edge has a width is returned as flattened. Corners that the union of
+/// the cloth does not move keep their coordinates to the last bit.
 ///
 /// # Errors
 /// [`CutError`] for a seam line that bounds no region (open, crossing itself, not finite), for widths below
@@ -56,7 +56,7 @@ impl CutLine {
         let mut edges = ring.edges.iter().zip(&cloth.is_leg);
         let bare = edges.all(|(edge, &is_leg)| edge.width == 0.0 && !is_leg);
         let rings = match (ring.number, bare) {
-            // A single chain: no corner has cloth.
+            // No allowance and no dart: the outer boundary is the chain of the seam line.
             (_, true) => vec![
                 cloth.chains[0]
                     .points
@@ -95,8 +95,8 @@ impl CutLine {
 }
 
 /// The rings with their corners moved back from the grid to their original coordinates, and needless corners
-/// left out. Either is undone if the rings then cross, which takes two corners within a grid step of each
-/// other.
+/// left out. If the rings then cross, one or both of these steps are undone; this takes two corners within a
+/// grid step of each other.
 fn traced(ring: &Ring, sides: &Sides, rings: &[Vec<Vec2>]) -> (Vec<Traced>, Vec<CutRing>) {
     let attempt = |exact: bool, merged: bool| {
         let traced: Vec<Traced> = rings.iter().map(|r| sides.trace(r, exact)).collect();

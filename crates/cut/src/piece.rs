@@ -28,17 +28,17 @@ use toile_pattern::{
     Role,
 };
 
-/// Depth below which a notch is reported as short (m).
+/// Depth (m); notches that are cut less deep are reported as short.
 const SHORT_NOTCH: f64 = 0.0035;
 
-/// The kind of a segment of a cut piece's line.
+/// Origin of a segment of a closed line of a cut piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum PieceSegment {
-    /// Cut line in the allowance of an edge; of a line that is sewn, the edge itself.
+    /// On a cut line, the line in the allowance of an edge; on a line to sew along, the edge itself.
     Edge(EdgeOrigin),
-    /// Cloth at the mouth of a dart; the edge is the leg it lies beside.
+    /// Cloth at the mouth of a dart; the edge is the leg that the segment lies beside.
     DartCap(EdgeOrigin),
-    /// Cut line at a corner; the edge is the one that starts there.
+    /// Cut line at a corner; the edge is the one that starts at the corner.
     Corner(EdgeOrigin),
     /// The fold of the cloth, which is not cut.
     Fold,
@@ -51,14 +51,14 @@ pub enum PieceSegment {
 pub struct PieceRing {
     /// Corners of the line (m); the first is not repeated.
     pub points: Vec<Vec2>,
-    /// The kind of the segment from each corner to the next.
+    /// Origins of the segments, one for the segment from each corner to the next.
     pub segments: Vec<PieceSegment>,
 }
 
 /// A line drawn inside a cut piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InsideLine {
-    /// The line of the panel, or the operation that made it.
+    /// Name of the panel's line, or of the operation that made the line.
     pub name: LineName,
     /// Corners of the line (m).
     pub points: Vec<Vec2>,
@@ -67,9 +67,9 @@ pub struct InsideLine {
 /// A point to mark with a drill or a tack: the end of a dart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drill {
-    /// The corner that the dart made.
+    /// Name of the corner that the dart made.
     pub name: CornerName,
-    /// The half of a folded panel that it is on.
+    /// Number of the half of a folded panel that the point is on.
     pub half: u8,
     /// Position (m).
     pub at: Vec2,
@@ -80,11 +80,11 @@ pub struct Drill {
 pub enum TextKind {
     /// The name of the piece.
     Name,
-    /// The size it is drafted to.
+    /// The size that the piece is drafted to.
     Size,
     /// The number of pieces to cut.
     Count,
-    /// The fabric it is cut from.
+    /// The fabric that the piece is cut from.
     Fabric,
 }
 
@@ -101,7 +101,7 @@ pub struct PieceText {
 /// flattened to [`FLATNESS`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutPiece {
-    /// The panel and copy.
+    /// The panel, and the number of the copy.
     pub id: PieceId,
     /// Name to show.
     pub name: String,
@@ -109,11 +109,12 @@ pub struct CutPiece {
     pub cut: Vec<PieceRing>,
     /// The lines to sew along: the outline first, then holes and darts inside the piece.
     pub sew: Vec<PieceRing>,
-    /// Other lines.
+    /// Lines drawn inside the piece.
     pub inside: Vec<InsideLine>,
-    /// The fold line that the piece was last unfolded at, with its side as drawn.
+    /// The last fold line along which the piece was unfolded, with the side that was drawn. `None`: the piece
+    /// was not unfolded.
     pub fold: Option<HalfPlane>,
-    /// Ends of the fold (m), if this is a half that is laid on the fold of the cloth.
+    /// Ends of the fold (m), if this is half of a piece and is laid on the fold of the cloth.
     pub on_fold: Option<[Vec2; 2]>,
     /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: f64,
@@ -129,11 +130,11 @@ pub struct CutPiece {
     pub texts: Vec<PieceText>,
     /// Faults of the cut line.
     pub findings: Vec<Finding>,
-    /// Edge of the pattern for each edge number in a finding.
+    /// Edges of the pattern by [`EdgeIndex`], loop by loop: findings give edges by such numbers.
     pub(crate) names: Vec<Vec<EdgeOrigin>>,
-    /// Width asked beside each of these edges (m).
+    /// Width of the allowance asked for beside each of these edges (m).
     pub(crate) widths: Vec<Vec<f64>>,
-    /// First leg of the dart for each dart number in a finding.
+    /// First leg of each dart by the dart's number in findings.
     pub(crate) darts: Vec<EdgeOrigin>,
 }
 
@@ -149,16 +150,16 @@ pub struct HalfPlane {
 /// Reason why a piece of a draft cannot be cut.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PieceError {
-    /// The seam line has no cut line.
+    /// No cut line can be made for the seam line: the reason in words.
     #[error("{0}")]
     Cut(String),
-    /// The draft has no such piece.
+    /// The draft has no piece of this number.
     #[error("there is no piece of number {0}")]
     NoPiece(usize),
 }
 
 impl CutPiece {
-    /// A piece of a draft as it is cut. `size` is written on it if given.
+    /// A piece of a draft as it is cut. `size` is written on the piece if it is given.
     ///
     /// # Errors
     /// [`PieceError`] if there is no piece of this number, or the piece has no cut line.
@@ -192,7 +193,7 @@ impl CutPiece {
         let rings = std::iter::once(&line.outline).chain(&line.holes);
         let cut: Vec<PieceRing> = rings.map(named).collect();
         let sew = sewn(&seam);
-        // Darts inside the piece are sewn and hold cloth: the room for notches ignores them.
+        // Darts inside the piece are sewn but not cut out: they do not limit the room for notches.
         let room = Room {
             cut: polygon_of(&cut),
             sewn: polygon_of(&sew[..seam.names.len()]),
@@ -283,7 +284,7 @@ impl CutPiece {
         points.all(|p| p.x.is_finite() && p.y.is_finite()) && self.grain.is_finite()
     }
 
-    /// The piece as cut, holes taken out.
+    /// Shape of the piece as cut, with its holes.
     pub fn polygon(&self) -> Polygon {
         polygon_of(&self.cut)
     }
@@ -293,7 +294,7 @@ impl CutPiece {
         Polygon::new(self.cut.first().map_or_else(Vec::new, |r| r.points.clone()))
     }
 
-    /// The piece as sewn.
+    /// Shape of the piece inside its seam lines.
     pub fn sewn(&self) -> Polygon {
         polygon_of(&self.sew)
     }
@@ -309,12 +310,12 @@ impl CutPiece {
         found.map(|text| &*text.text)
     }
 
-    /// Width of the allowance asked beside an edge of a finding (m).
+    /// Width of the allowance asked for beside an edge (m); edges of findings are numbered alike.
     pub(crate) fn width(&self, index: EdgeIndex) -> Option<f64> {
         self.widths.get(index.ring)?.get(index.edge).copied()
     }
 
-    /// Edge of the pattern for an edge number in a finding.
+    /// Edge of the pattern for the number of an edge in a finding.
     pub fn edge(&self, index: EdgeIndex) -> Option<EdgeOrigin> {
         name_of(&self.names, index)
     }
@@ -338,7 +339,8 @@ fn widths(seam: &NamedSeam) -> Vec<Vec<f64>> {
     loops.map(width).collect()
 }
 
-/// The fold line that a piece was last unfolded at: everything drawn before lies on one side of it.
+/// The last fold line along which a piece was unfolded: everything drawn before that fold lies on one side of
+/// it.
 fn last_fold(piece: &Piece, plane: &Plane) -> Option<HalfPlane> {
     let bit = 1_u8 << piece.folds.len().checked_sub(1)?.min(7);
     let [at, way] = *piece.folds.last()?;
@@ -369,7 +371,7 @@ fn sewn(seam: &NamedSeam) -> Vec<PieceRing> {
     seam.loops().map(ring).collect()
 }
 
-/// Findings about notches: those with a narrow allowance, and those without any.
+/// Findings about notches: those in a narrow allowance, and those without an allowance.
 fn notch_findings(notches: &[CutNotch]) -> Vec<Finding> {
     let of = |wanted: &dyn Fn(&CutNotch) -> bool| {
         let mut ids: Vec<NotchId> = Vec::new();
@@ -408,7 +410,7 @@ fn inside_lines(piece: &Piece, plane: &Plane) -> Vec<InsideLine> {
     piece.internal_lines.iter().map(line).collect()
 }
 
-/// Ends of darts: the apex of a dart in the outline, the corners of a dart inside.
+/// Ends of darts: the apex of each dart in the outline, and the corners of each dart inside the piece.
 fn drills(seam: &NamedSeam) -> Vec<Drill> {
     let outline = seam.names.first().map_or(&[][..], |names| names);
     let mut found = Vec::new();

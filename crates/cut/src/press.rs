@@ -8,7 +8,7 @@ use crate::seams::{NamedSeam, Plane};
 use toile_geometry::Vec2;
 use toile_pattern::{NotchKind, Piece, PressArrow, Role};
 
-/// The press arrows of a piece, in the plane in which it is cut.
+/// The press arrows of a piece, mapped to the plane in which the piece is cut.
 pub(crate) fn pressed(piece: &Piece, plane: &Plane) -> Vec<PressArrow> {
     let arrow = |arrow: &PressArrow| {
         let across = plane.vector(arrow.way);
@@ -27,13 +27,14 @@ pub(crate) fn pressed(piece: &Piece, plane: &Plane) -> Vec<PressArrow> {
 pub struct FoldTick {
     /// Ends of the line (m), from the cut line inwards.
     pub ends: [Vec2; 2],
-    /// Whether the line lies in the allowance, where it may be cut like a notch. Without an allowance it runs
-    /// into the cloth and is only drawn.
+    /// Whether the line lies in the allowance, where it may be cut like a notch. If there is no allowance,
+    /// the line runs into the cloth and is only drawn.
     pub in_allowance: bool,
 }
 
-/// Short lines where the extended legs of darts and lines of pleats meet the cut line: into the allowance, as
-/// deep as notches, or, without an allowance, along the leg into the cloth. None where there is a notch.
+/// Short lines where the extended legs of darts and lines of pleats meet the cut line. They run into the
+/// allowance, as deep as notches; where there is no allowance, along the leg into the cloth. Omitted where a
+/// notch stands.
 pub(crate) fn fold_ticks(
     piece: &Piece,
     plane: &Plane,
@@ -56,8 +57,8 @@ pub(crate) fn fold_ticks(
     ticks
 }
 
-/// Ends on the outline of the legs of darts and the lines of pleats, each with a point farther along the line
-/// in the cloth.
+/// Ends, on the outline, of the legs of darts and the lines of pleats. Each comes with a second point of the
+/// leg or line, farther inside the cloth.
 fn folded_ends(piece: &Piece, plane: &Plane, seam: &NamedSeam) -> Vec<[Vec2; 2]> {
     let outline = &seam.line.outline;
     let legs = seam.line.darts.iter().flat_map(|dart| {
@@ -75,7 +76,7 @@ fn folded_ends(piece: &Piece, plane: &Plane, seam: &NamedSeam) -> Vec<[Vec2; 2]>
     legs.chain(lines.flatten()).collect()
 }
 
-/// The short lines at one end: one for each cut line that meets there.
+/// The short lines at one end of a leg or pleat line: one for each cut line that meets there.
 fn ticks_at([end, inner]: [Vec2; 2], seam: &NamedSeam, room: &Room) -> Vec<FoldTick> {
     let outwards = corner_at(seam, end).map_or_else(Vec::new, |corner| corner.outwards_all());
     let ways: Vec<(Vec2, Vec2)> = outwards

@@ -4,16 +4,17 @@ use crate::chain::Chain;
 use crate::ring::Ring;
 use toile_geometry::{Bounds2, Polygon, Vec2, point_segment_distance, ring_area, wound_region};
 
-/// Step (m) to which points are rounded before the union, a hundredth of the union's own grid. Its result
-/// lies on multiples of this step too, so no rounding comes between the grid, on which rings do not cross,
-/// and the caller.
+/// Step (m) to which points are rounded before the union: a hundredth of the step of the union's own grid.
+/// The union's result lies on multiples of this step too, so it is not rounded again, which could make its
+/// rings cross.
 const STEP: f64 = 1.0 / (1u64 << 36) as f64;
-/// Step (m) to which the origin is rounded, so that moving back is exact up to 8 km from it.
+/// Step (m) to which the origin of a frame is rounded, so that moving points back is exact up to 8 km from
+/// it.
 const ORIGIN_STEP: f64 = 1.0 / (1u64 << 20) as f64;
-/// Step of the union's grid over half the union's extent, which has 2^28 to 2^29 steps.
+/// Step of the union's grid, over half the union's extent (1): half the extent has 2^28 to 2^29 steps.
 const GRID: f64 = 1.0 / (1u64 << 28) as f64;
 
-/// A coordinate system with the origin near the piece, rounded to [`STEP`].
+/// A coordinate system whose origin is near the piece; its coordinates are rounded to [`STEP`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub origin: Vec2,
@@ -54,17 +55,18 @@ fn largest(polygons: Vec<Polygon>) -> Option<Polygon> {
         .max_by(|a, b| a.area().total_cmp(&b.area()))
 }
 
-/// Whether a ring is more than a sliver: its area (m2) is compared with a strip as wide as the tolerance (m).
+/// Whether a ring is more than a sliver: whether its area exceeds that of a strip which is as wide as the
+/// tolerance (m) and as long as the ring's box is wide and high together.
 fn is_real(ring: &[Vec2], tolerance: f64) -> bool {
     let length: f64 = Bounds2::of(ring.iter().copied()).size().sum();
     ring_area(ring).abs() > tolerance * length
 }
 
-/// A ring without segments shorter than the grid's error, and without hairlines: places where the ring runs
-/// back along itself. Rounding leaves them between sides in one line that end in different points.
+/// A ring without segments shorter than the grid's error, and without hairlines (places where the ring runs
+/// back along itself). Rounding leaves hairlines where sides on one line end in different points.
 fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
     let mut k = 0;
-    // Steps since the last removal; a whole round of them ends the loop.
+    // Corners examined since the last removal; after a whole round without a removal the loop ends.
     let mut steady = 0;
     while ring.len() > 3 && steady < ring.len() {
         let count = ring.len();
@@ -91,7 +93,7 @@ fn without_hairlines(mut ring: Vec<Vec2>, tolerance: f64) -> Vec<Vec2> {
     ring
 }
 
-/// The piece's outline and the bays that its allowances close, in the frame.
+/// The piece's outline, and the bays whose mouths are closed by allowances, in coordinates of the frame.
 pub(crate) fn outline_region(chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
     let Some(whole) = largest(wound_region(&frame.loops(chains))) else {
         return Vec::new();
@@ -104,8 +106,9 @@ pub(crate) fn outline_region(chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
         .collect()
 }
 
-/// The remains of a hole inside its allowances, clockwise, in the frame: the holes of a sheet of cloth round
-/// the hole, with the hole cut out and its allowances added.
+/// The parts of a hole that its allowances leave open, clockwise, in coordinates of the frame. They are the
+/// holes of a sheet of cloth round the hole, from which the hole is cut out and to which its allowances are
+/// added.
 pub(crate) fn hole_region(ring: &Ring, chains: &[Chain], frame: Frame) -> Vec<Vec<Vec2>> {
     let mut loops = frame.loops(chains);
     let seam = ring.chords.iter().map(|chord| frame.snap(chord.from));

@@ -6,7 +6,7 @@ use toile_geometry::{Curve, Vec2, orient2d, ring_area};
 /// Largest distance of chords from the curves (m): a tenth of what a cutter resolves.
 pub const FLATNESS: f64 = 5e-6;
 
-/// Factor by which edges with tight bends are flattened finer.
+/// Factor by which the flattening of edges with tight bends is finer (1).
 const FINER: f64 = 8.0;
 
 /// A straight piece of an edge.
@@ -16,7 +16,7 @@ pub(crate) struct Chord {
     pub to: Vec2,
     /// Number of the chord's edge in [`Ring::edges`].
     pub edge: usize,
-    /// Length of the edge before the chord, in the ring's direction (m).
+    /// Length along the edge, in the ring's direction, at which the chord starts (m).
     pub at: f64,
     /// Length of the chord (m), above 0.
     pub length: f64,
@@ -31,28 +31,28 @@ impl Chord {
     }
 }
 
-/// An edge in the ring's direction.
+/// An edge of a ring, in the ring's direction.
 #[derive(Clone, Debug)]
 pub(crate) struct RingEdge {
-    /// Number of the edge in the given loop.
+    /// Number of the edge in the loop as given.
     pub source: usize,
     /// Width of the allowance (m).
     pub width: f64,
-    /// Shape of the corner at the edge's start; previous and next are in the ring's direction.
+    /// Shape of the corner at the edge's start. In its name, previous and next refer to the ring's direction.
     pub corner: Corner,
-    /// Limit of the corner's reach, over the wider allowance (1).
+    /// Limit of the cut line's distance from that corner, over the wider allowance (1).
     pub limit: f64,
     /// Chords of the edge, as a range of [`Ring::chords`].
     pub chords: std::ops::Range<usize>,
     /// Length of all chords (m).
     pub length: f64,
-    /// Outward normals of the curve at its start and end. The normals of the chords there differ by up to
-    /// some hundredths, half a millimetre at the end of a wide allowance.
+    /// Outward normals of the curve at its start and end. The normals of the first and last chord differ from
+    /// these by up to some hundredths, which is half a millimetre at the end of a wide allowance.
     pub ends: [Vec2; 2],
 }
 
-/// Points along an edge. Where the edge bends as tightly as its allowance is wide, the cut line moves by more
-/// than the chords do: it is flattened finer there.
+/// Points along an edge. Where the edge bends as tightly as its allowance is wide, flattening moves the cut
+/// line more than the chords, so such an edge is flattened finer.
 fn flattened(edge: &SeamEdge) -> Vec<Vec2> {
     let points = edge.curve.flatten(FLATNESS);
     let is_tight = |p: &[Vec2]| {
@@ -67,7 +67,8 @@ fn flattened(edge: &SeamEdge) -> Vec<Vec2> {
 }
 
 impl RingEdge {
-    /// Takes the normals of the curve at the edge's ends, where the curve has a tangent close to the chord's.
+    /// Sets the normals at the edge's ends to those of the curve, where the tangent of the curve is close to
+    /// the chord.
     fn set_ends(&mut self, chords: &[Chord], curve: &Curve, reversed: bool) {
         let sign = if reversed { -1.0 } else { 1.0 };
         for end in 0..2 {
@@ -82,7 +83,8 @@ impl RingEdge {
             };
             let (sin, cos) = (normal.perp(&chord.normal), normal.dot(&chord.normal));
             let outer = (sin < 0.0) == (end == 1);
-            // Outside a tight bend the end of the allowance would come nearer to the chord.
+            // Outside a tight bend, the curve's normal would move the end of the allowance nearer to the
+            // chord.
             let exact = self.width * (1.0 - cos) < FLATNESS;
             if exact || (!outer && cos > 0.95) {
                 self.ends[end] = normal;
@@ -97,7 +99,7 @@ impl RingEdge {
 pub(crate) struct Ring {
     /// Number of the loop: 0 is the outline.
     pub number: usize,
-    /// Whether the loop was given the other way round.
+    /// Whether the ring runs against the loop as given.
     pub reversed: bool,
     pub edges: Vec<RingEdge>,
     pub chords: Vec<Chord>,
@@ -174,12 +176,12 @@ impl Ring {
         }
     }
 
-    /// Number in the given loop of the edge that chord `k` is a part of.
+    /// Number, in the loop as given, of the edge that chord `k` is a part of.
     pub fn source_of(&self, k: usize) -> usize {
         self.edges[self.chords[k].edge].source
     }
 
-    /// Number of an edge in the given seam line.
+    /// Number of an edge in the seam line as given.
     pub fn index(&self, edge: usize) -> EdgeIndex {
         EdgeIndex {
             ring: self.number,
@@ -187,12 +189,12 @@ impl Ring {
         }
     }
 
-    /// The edge before another in the ring.
+    /// Number of the edge before `edge` in the ring.
     pub fn before(&self, edge: usize) -> usize {
         (edge + self.edges.len() - 1) % self.edges.len()
     }
 
-    /// The edge after another in the ring.
+    /// Number of the edge after `edge` in the ring.
     pub fn after(&self, edge: usize) -> usize {
         (edge + 1) % self.edges.len()
     }
@@ -220,7 +222,8 @@ impl Ring {
         }
     }
 
-    /// A length along an edge in its given direction (m), from one in the ring's direction.
+    /// Distance of a place from the start of its edge as given (m); `at` is the distance in the ring's
+    /// direction (m).
     pub fn given_place(&self, edge: usize, at: f64) -> f64 {
         if self.reversed {
             self.edges[edge].length - at
@@ -229,7 +232,8 @@ impl Ring {
         }
     }
 
-    /// The legs of a dart as edges of the ring, in the ring's order.
+    /// The legs of a dart as edges of the ring, in the ring's order. `None`: a leg is missing or they do not
+    /// meet.
     pub fn legs(&self, legs: [usize; 2]) -> Option<[usize; 2]> {
         let find = |source: usize| self.edges.iter().position(|e| e.source == source);
         let [a, b] = [find(legs[0])?, find(legs[1])?];
@@ -237,7 +241,7 @@ impl Ring {
         (self.after(ordered[0]) == ordered[1]).then_some(ordered)
     }
 
-    /// Whether two legs form a notch in the cloth: the apex is an inner corner.
+    /// Whether two legs cut into the cloth: whether their apex is an inner corner.
     pub fn is_notch(&self, legs: [usize; 2]) -> bool {
         self.legs(legs).is_some_and(|[a, b]| {
             let (from, apex, to) = (self.first(a).from, self.first(b).from, self.last(b).to);

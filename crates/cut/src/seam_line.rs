@@ -10,15 +10,15 @@ pub struct SeamEdge {
     pub curve: Curve,
     /// Width of the allowance (m), measured square to the curve; 0 for none.
     pub width: f64,
-    /// Shape of the cut line at the edge's start.
+    /// Shape of the cut line at the corner at the edge's start.
     pub corner: Corner,
-    /// Limit of the cut line's reach from that corner, over the wider allowance (1): usually
+    /// Limit of the cut line's distance from that corner, over the wider allowance (1): usually
     /// [`crate::MITRE_LIMIT`], from 1 to 100.
     pub limit: f64,
 }
 
-/// A dart that is sewn shut and pressed to one side, drawn as two edges of the outline that meet in its apex.
-/// Widths and corners of these edges are not used.
+/// A dart that is sewn shut and pressed to one side. It is drawn as two edges of the outline, its legs, that
+/// meet in the apex; widths and corners of the legs are not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dart {
     /// Numbers of the outline's edges: the leg before the apex and the leg after it.
@@ -65,7 +65,7 @@ pub enum CutError {
     /// A loop encloses nothing.
     #[error("loop {0} encloses nothing")]
     NoArea(usize),
-    /// Two edges meet where they should not.
+    /// Two edges cross or touch other than end to start.
     #[error("{0:?} and {1:?} meet at {2:?}")]
     Crossing(EdgeIndex, EdgeIndex, Vec2),
     /// A hole lies outside the outline or in another hole.

@@ -21,12 +21,12 @@ use std::f64::consts::FRAC_PI_8;
 use toile_geometry::{Curve, Vec2, ring_area};
 use toile_pattern::{Corner as Asked, EdgeOrigin, MitreLimit, Piece, PieceEdge};
 
-/// A seam line with the names of its edges, loop by loop: the outline, then each hole.
+/// A seam line and, for each loop, the names of its edges: the outline, then each hole.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NamedSeam {
     pub line: SeamLine,
     pub names: Vec<Vec<EdgeOrigin>>,
-    /// Loops that are sewn and not cut: darts inside the piece.
+    /// Loops that are sewn but not cut, with the names of their edges: darts inside the piece.
     pub sewn_only: Vec<(Vec<SeamEdge>, Vec<EdgeOrigin>)>,
 }
 
@@ -49,10 +49,11 @@ impl NamedSeam {
     }
 }
 
-/// The plane in which a piece is cut: enlarged against shrinkage and seen from the right side of the cloth.
+/// The plane in which a piece is cut: enlarged to make up for shrinkage, and seen from the right side of the
+/// cloth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plane {
-    /// Unit vector along the warp, as drawn.
+    /// Unit vector along the warp, before any turning over.
     warp: Vec2,
     /// Factors by which the piece is enlarged along the warp and the weft.
     factors: [f64; 2],
@@ -76,7 +77,7 @@ impl Plane {
         self.factors[0] == self.factors[1]
     }
 
-    /// A drawn vector in the plane of cutting.
+    /// A vector of the drawn piece mapped to the plane of cutting.
     pub fn vector(&self, v: Vec2) -> Vec2 {
         let weft = Vec2::new(-self.warp.y, self.warp.x);
         let [along, across] = self.factors;
@@ -92,7 +93,7 @@ impl Plane {
         Vec2::new(x, stretched.y)
     }
 
-    /// A drawn normal in the plane of cutting, of length 1.
+    /// A normal of the drawn piece mapped to the plane of cutting, of length 1.
     pub fn normal(&self, n: Vec2) -> Vec2 {
         let along = self.vector(Vec2::new(-n.y, n.x));
         let sign = if self.turned { -1.0 } else { 1.0 };
@@ -101,7 +102,7 @@ impl Plane {
             .unwrap_or(n)
     }
 
-    /// Direction of the warp in the plane of cutting (rad).
+    /// Direction of the warp in the plane of cutting (rad); `drawn` is its direction as drawn.
     pub fn grain(&self, drawn: f64) -> f64 {
         match self.turned {
             true => std::f64::consts::PI - drawn,
@@ -109,7 +110,7 @@ impl Plane {
         }
     }
 
-    /// A drawn curve in the plane of cutting. An arc that is stretched unevenly becomes a few cubics,
+    /// A drawn curve mapped to the plane of cutting. An arc that is stretched unevenly becomes a few cubics,
     /// accurate to 1e-7 of its radius.
     pub fn curves(&self, curve: Curve) -> Vec<Curve> {
         match curve {
@@ -162,8 +163,8 @@ fn cubic_of(arc: Curve) -> Curve {
     let Curve::Arc { start, end, bulge } = arc else {
         return arc;
     };
-    // The bulge is the tangent of a quarter of the arc's angle. Handles are 4/3 of it times the radius, which
-    // is half the chord over the sine of half the angle.
+    // The bulge is the tangent of a quarter of the arc's angle. The handles are 4/3 of the bulge times the
+    // radius long; the radius is half the chord over the sine of half the angle.
     let radius = 0.5 * (end - start).norm() / (2.0 * bulge.abs().atan()).sin();
     let handle = 4.0 / 3.0 * bulge.abs() * radius;
     let tangent = |t: f64| arc.derivative(t).try_normalize(0.0).unwrap_or_default();
@@ -221,8 +222,8 @@ fn edges_of(edges: &[PieceEdge], plane: &Plane, block: f64) -> (Vec<SeamEdge>, V
     (made, names)
 }
 
-/// Limit of a corner's reach, over the wider allowance (1). `MitreLimit::None` gives the largest that may be
-/// asked: a mitre of a little more than one degree.
+/// Limit of the cut line's distance from a corner, over the wider allowance (1). `MitreLimit::None` gives the
+/// largest limit that may be asked for, which leaves mitres whole down to a little more than one degree.
 fn limit_of(limit: MitreLimit) -> f64 {
     let [least, most] = MitreLimit::RANGE;
     match limit {
@@ -231,9 +232,9 @@ fn limit_of(limit: MitreLimit) -> f64 {
     }
 }
 
-/// Shape of the cut line at the start of an edge. Shapes that refer to one of the two edges refer to the one
-/// after the corner as drawn, which on a mirror image is the one before. Where an edge meets its own mirror
-/// image they become mitres.
+/// Shape of the cut line at the start of an edge. In the document, a shape that treats the two edges unlike
+/// refers to the edge after the corner as drawn; on a mirror image this is the edge before. Where an edge
+/// meets its own mirror image, such a shape becomes a mitre.
 fn corner_of(before: &PieceEdge, edge: &PieceEdge) -> Corner {
     let own_image =
         before.origin.name == edge.origin.name && before.origin.half != edge.origin.half;

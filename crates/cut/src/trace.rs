@@ -7,10 +7,10 @@ use crate::{CutRing, Origin, SegmentKind};
 use std::ops::ControlFlow;
 use toile_geometry::{EdgeTree, Vec2, point_segment_distance};
 
-/// Least height of a corner that turns, over its shorter side (1).
+/// Least height of a triangle of three corners, over its shorter side, at which the middle corner turns (1).
 const TURN: f64 = 1e-4;
 
-/// All sides of all chains: in the frame (`tree`) and as given.
+/// All sides of all chains: in coordinates of the frame (`tree`) and as given.
 pub(crate) struct Sides {
     frame: Frame,
     tree: EdgeTree,
@@ -18,9 +18,9 @@ pub(crate) struct Sides {
     tags: Vec<Tag>,
 }
 
-/// A ring with the side each of its segments lies on.
+/// A ring of the union, with the side of a chain that each of its segments lies on.
 pub(crate) struct Traced {
-    /// Corners (m), no longer in the frame.
+    /// Corners (m), moved back from the frame to coordinates of the piece.
     pub points: Vec<Vec2>,
     pub sides: Vec<usize>,
     /// Start and end of each segment on its side (shares of the side's length).
@@ -35,7 +35,7 @@ struct Overlap {
     side: usize,
 }
 
-/// Rank of a tag: the side of the least rank names a segment that several sides lie along.
+/// Rank of a tag: where a segment lies along several sides, it gets the tag of the least rank.
 fn rank(tag: &Tag) -> u8 {
     match (tag.kind, tag.beside) {
         (SegmentKind::Edge, Some(_)) => 0,
@@ -67,7 +67,7 @@ impl Sides {
         &self.tags[side]
     }
 
-    /// The part of a segment that runs along a side in the same direction.
+    /// The part of a segment that runs along a side in the same direction; `None`: no part does.
     fn overlap(&self, [p, q]: [Vec2; 2], side: usize) -> Option<Overlap> {
         let [a, b] = self.tree.edges()[side];
         let tolerance = self.frame.tolerance;
@@ -102,8 +102,8 @@ impl Sides {
         (0..self.tags.len()).min_by(order).unwrap_or(0)
     }
 
-    /// Sides along a segment with the place where each begins (m): those of the best rank, in order, without
-    /// gaps.
+    /// Sides along a segment, each with the place where it begins (m): at every place the side of the least
+    /// rank, in order, without gaps.
     fn pieces(&self, segment: [Vec2; 2], overlaps: &[Overlap]) -> Vec<(f64, usize)> {
         let length = (segment[1] - segment[0]).norm();
         let covers = |overlap: &&Overlap, t: f64| overlap.from <= t && t <= overlap.to;
@@ -135,8 +135,8 @@ impl Sides {
         pieces
     }
 
-    /// A ring in the frame with the side that each segment lies on; segments along several sides are divided.
-    /// With `exact`, corners that are ends of sides get the coordinates of those ends as given.
+    /// A ring in the frame, with the side that each of its segments lies on; a segment along several sides is
+    /// divided. If `exact`, corners that are ends of sides get the original coordinates of those ends.
     pub fn trace(&self, ring: &[Vec2], exact: bool) -> Traced {
         let count = ring.len();
         let segments: Vec<[Vec2; 2]> = (0..count)
@@ -188,8 +188,9 @@ impl Sides {
 }
 
 impl Traced {
-    /// The ring with the edges as given. `merged` leaves out corners in which nothing turns and no edge ends,
-    /// such as between a corner's patch and the cut line that it continues.
+    /// The ring as part of the cut line, with the edges as given. If `merged`, corners are left out at which
+    /// the ring does not turn and no edge ends, such as between the cloth of a corner and the cut line that
+    /// continues it.
     pub fn ring(&self, ring: &Ring, sides: &Sides, merged: bool) -> CutRing {
         let mut tags: Vec<Tag> = self.sides.iter().map(|&side| *sides.tag(side)).collect();
         let mut points = self.points.clone();
@@ -223,8 +224,8 @@ impl Traced {
     }
 }
 
-/// The tag of two segments in one line, if they may be joined: an edge or a dart cap absorbs a corner at its
-/// end.
+/// The tag of two segments on one line if they may be joined, with a corner's segment becoming part of the
+/// edge or dart cap beside it; `None`: they may not be joined.
 fn joined(ring: &Ring, [a, b]: [&Tag; 2]) -> Option<Tag> {
     use SegmentKind::{Corner, DartCap, Edge};
     let beside = [ring.before(a.edge), a.edge, ring.after(a.edge)].contains(&b.edge);

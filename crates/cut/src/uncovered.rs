@@ -7,15 +7,15 @@ use crate::trace::{Sides, Traced};
 use crate::{CutRing, Finding};
 use toile_geometry::{Polygon, Vec2, point_segment_distance};
 
-/// Shortest span that is reported (m): shorter ones come from flattening at bends of tight curves.
+/// Shortest span that is reported (m): flattening makes shorter ones at bends of tight curves.
 const SHORTEST: f64 = 1e-4;
-/// Shortest gap between spans that is more than rounding (m).
+/// Shortest gap between spans that is not mere rounding (m).
 const ROUNDING: f64 = 1e-7;
-/// Depth from which a slit counts as shut, over the widest allowance beside it (1): the depth of an inner
-/// corner of 60 degrees between equal allowances.
+/// Depth from which a slit counts as shut, over the widest allowance beside it (1). This is the depth to
+/// which equal allowances close an inner corner of 60 degrees.
 const SLIT_DEPTH: f64 = 2.0;
 
-/// A span of one edge without a cut line of its own.
+/// A span of one edge that has no cut line of its own.
 #[derive(Clone, Copy, Debug)]
 struct Gap {
     edge: usize,
@@ -27,7 +27,8 @@ struct Gap {
     least: f64,
 }
 
-/// Findings about a ring whose cloth has the cut rings `cut`.
+/// Findings about lengths of a ring that `covered` leaves without a cut line; `cut` are the rings of the cut
+/// line.
 pub(crate) fn uncovered_findings(
     ring: &Ring,
     cloth: &Cloth,
@@ -52,7 +53,7 @@ pub(crate) fn uncovered_findings(
     findings
 }
 
-/// Adds a span, or extends the last one if the new one continues it.
+/// Adds a span to `gaps`, or extends the last span there if `gap` continues it.
 fn add(gaps: &mut Vec<Gap>, gap: Gap) {
     match gaps.last_mut() {
         Some(last)
@@ -67,7 +68,7 @@ fn add(gaps: &mut Vec<Gap>, gap: Gap) {
     }
 }
 
-/// The shares of each chord that have a cut line of their own, sorted.
+/// For each chord, the shares of its length that have a cut line of their own, sorted.
 pub(crate) fn covered(ring: &Ring, sides: &Sides, traced: &[Traced]) -> Vec<Vec<[f64; 2]>> {
     let mut covered = vec![Vec::new(); ring.chords.len()];
     for traced in traced {
@@ -83,7 +84,7 @@ pub(crate) fn covered(ring: &Ring, sides: &Sides, traced: &[Traced]) -> Vec<Vec<
     covered
 }
 
-/// The spans of a chord (m) that the sorted shares leave uncovered.
+/// The spans of a chord (m) that lie outside all `covered` shares, which are sorted.
 fn uncovered(covered: &[[f64; 2]], length: f64) -> Vec<[f64; 2]> {
     let mut left = Vec::new();
     let mut at = 0.0;
@@ -124,7 +125,7 @@ fn is_inner(ring: &Ring, edge: usize) -> bool {
     before.perp(&ring.edges[edge].ends[0]) < -STRAIGHT
 }
 
-/// The seam line with the cut line outside it.
+/// The seam line of a ring and the cut line made for it.
 struct Piece<'a> {
     ring: &'a Ring,
     cut: Polygon,
@@ -135,7 +136,7 @@ struct Piece<'a> {
 impl<'a> Piece<'a> {
     fn new(ring: &'a Ring, cut: &[CutRing]) -> Self {
         let mut points = cut.iter().map(|ring| ring.points.clone());
-        // A hole has cloth all round it: for holes the inside and outside of this polygon are swapped.
+        // Cloth lies all round a hole: for holes, the inside and outside of this polygon are swapped.
         let cut = Polygon {
             outer: points.next().unwrap_or_default(),
             holes: points.collect(),
@@ -151,8 +152,8 @@ impl<'a> Piece<'a> {
         self.cut.contains(p) == (self.ring.number == 0)
     }
 
-    /// Width of the cloth beside a point of the seam line, square to it (m); infinite where the cut line is
-    /// not met.
+    /// Width of the cloth beside a point of the seam line, measured along `normal` (m); infinite if the cut
+    /// line is not met.
     fn width(&self, p: Vec2, normal: Vec2) -> f64 {
         let hit = |&[a, b]: &[Vec2; 2]| {
             let (from, to) = (normal.perp(&(a - p)), normal.perp(&(b - p)));
@@ -166,7 +167,8 @@ impl<'a> Piece<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// A span of a chord (m), divided where the chord's own offset line crosses the cut line.
+    /// Ends and dividing points of a span of a chord (m): it is divided where the chord's offset line crosses
+    /// the cut line.
     fn divided(&self, k: usize, [from, to]: [f64; 2]) -> Vec<f64> {
         let chord = &self.ring.chords[k];
         let width = self.ring.edges[chord.edge].width;
@@ -187,7 +189,7 @@ impl<'a> Piece<'a> {
         let width = self.ring.edges[chord.edge].width;
         let at = |t: f64| chord.from + chord.along() * t;
         let own = at(0.5 * (span[0] + span[1])) + chord.normal * width;
-        // Beyond the centre of a tight curve the offset point may come to lie on the cut line by chance.
+        // Beyond the centre of a tight curve, the offset point may lie on the cut line by chance.
         let swallowed = self.is_cloth(own) || self.depth(own) < 2.0 * FLATNESS;
         let least = match swallowed {
             true => width,
@@ -205,7 +207,7 @@ impl<'a> Piece<'a> {
         }
     }
 
-    /// Point of an edge at a length from the edge's start (m).
+    /// Point of an edge at the distance `at` from the edge's start (m).
     fn point(&self, edge: usize, at: f64) -> Vec2 {
         let chords = &self.ring.chords[self.ring.edges[edge].chords.clone()];
         let k = chords.partition_point(|chord| chord.at <= at).max(1) - 1;
@@ -218,7 +220,7 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// Slits: runs of swallowed spans, also across corners, that reach far from the cut line.
+/// Slits: runs of swallowed spans, which may go on round corners, that reach far from the cut line.
 fn slits(piece: &Piece, gaps: &[Gap]) -> Vec<Finding> {
     let ring = piece.ring;
     let swallowed: Vec<&Gap> = gaps.iter().filter(|gap| gap.swallowed).collect();
@@ -247,7 +249,7 @@ fn slits(piece: &Piece, gaps: &[Gap]) -> Vec<Finding> {
 fn slit(piece: &Piece, run: &[&Gap]) -> Option<Finding> {
     let ring = piece.ring;
     let (first, last) = (run.first()?, run.last()?);
-    // Includes the edges beside the run, whose allowances may cover it.
+    // The edges before and after the run count too: their allowances may cover it.
     let beside = [ring.before(first.edge), ring.after(last.edge)];
     let edges = run.iter().map(|gap| gap.edge).chain(beside);
     let widest = edges.map(|k| ring.edges[k].width).fold(0.0, f64::max);

@@ -13,8 +13,8 @@ const SHORT: f64 = 0.002;
 /// Least amount by which a reported allowance is narrower than asked (m).
 const NARROWER: f64 = 5e-4;
 
-/// Diagnostics of the cut lines of a draft, once for all copies and halves of a panel, and errors for pieces
-/// that have no cut line.
+/// Diagnostics of the cut lines of a draft, and errors for pieces that have no cut line. A diagnostic of a
+/// panel is reported once, not for every copy and half.
 pub fn cut_diagnostics(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (k, piece) in draft.pieces.iter().enumerate() {
@@ -38,12 +38,12 @@ pub fn cut_diagnostics(pattern: &Pattern, draft: &Draft) -> Vec<Diagnostic> {
     found
 }
 
-/// Whether a person who cuts a piece should know of it: faults of the cut line, and short or drawn notches.
+/// Whether a diagnostic matters to the person who cuts: faults of the cut line, and short or drawn notches.
 pub fn concerns_cutter(found: &Diagnostic) -> bool {
     found.severity > Severity::Note || matches!(found.code, Code::NotchShort | Code::NotchDrawn)
 }
 
-/// A finding in words: severity, code, place, text and remedy.
+/// A finding put into words: severity, code, place, text and remedy.
 struct Message {
     severity: Severity,
     code: Code,
@@ -58,8 +58,8 @@ fn mm(length: f64) -> String {
 }
 
 impl CutPiece {
-    /// Diagnostics of the piece's cut line, with millimetres and the names of edges. A finding on both halves
-    /// of a folded panel is reported once.
+    /// Diagnostics of the piece's cut line, with lengths in millimetres and names of edges. A finding on both
+    /// halves of a folded panel is reported once.
     pub fn diagnostics(&self, pattern: &Pattern) -> Vec<Diagnostic> {
         let id = self.id.panel;
         let Some(panel) = pattern.panel(id) else {
@@ -253,7 +253,7 @@ impl CutPiece {
         })
     }
 
-    /// Message about one notch or several.
+    /// Message about one or several notches.
     fn notches_message(
         &self,
         lineage: &[&Panel],
@@ -281,7 +281,7 @@ impl CutPiece {
         }
     }
 
-    /// Place of an edge, or of the operation that made it; without an edge, the panel.
+    /// Diagnostic place of an edge, or of the operation that made the edge; the panel if `edge` is `None`.
     fn place(&self, edge: Option<EdgeOrigin>) -> Place {
         let panel = self.id.panel;
         match edge.map(|edge| edge.name) {
@@ -291,7 +291,7 @@ impl CutPiece {
         }
     }
 
-    /// Words for the corner at the start of an edge: the names of its two edges.
+    /// Words for the corner at the start of an edge: the names of the two edges that meet there.
     fn corner_words(&self, lineage: &[&Panel], corner: EdgeIndex) -> String {
         let count = self.names.get(corner.ring).map_or(1, Vec::len);
         let before = EdgeIndex {

@@ -62,7 +62,8 @@ pub enum Facing {
     Left,
     /// On the wearer's right of the body part (-x; below an arm).
     Right,
-    /// All round the body part, closed by a seam with itself at the back (or under the arm, inside the leg).
+    /// All round the body part, closed by a seam that joins the panel to itself at the back (under the arm;
+    /// inside the leg).
     Around,
     /// Over the top of the body part: laid on horizontally, as a poncho is.
     Over,

@@ -19,31 +19,31 @@ use crate::{
 use toile_fabric::{Component, Domain};
 use toile_geometry::{Rings, Vec2};
 
-/// Ends of neighbouring edges may be this far apart (m): rounding, not a gap.
+/// Largest distance between the ends of neighbouring edges that counts as rounding, not as a gap (m).
 const GAP: f64 = 1e-6;
-/// An edge shorter than this has no length (m).
+/// Length below which an edge counts as having no length (m).
 const SHORTEST: f64 = 1e-6;
 /// Greatest distance of a polyline from the curve that it stands for (m).
 const FLATNESS: f64 = 5e-5;
-/// Sides of a seam may differ by this without ease (m): less than a stitch.
+/// Difference between the lengths of a seam's sides that needs no ease (m): less than a stitch.
 pub const SEAM_TOLERANCE: f64 = 5e-4;
-/// Distance by which an internal line may leave its panel (m).
+/// Distance by which an internal line may reach outside its panel (m).
 const LINE_TOLERANCE: f64 = 1e-5;
-/// Most crossings that are reported of one piece.
+/// Most crossings that are reported for one piece.
 const CROSSINGS: usize = 5;
 /// Number of points at which one internal line is checked.
 const LINE_SAMPLES: usize = 500;
 
 impl Pattern {
-    /// Everything that is wrong with the pattern for a size or a table of measurements: what keeps it from
-    /// being drafted, then what keeps the draft from being cut and sewn.
+    /// All faults of the pattern for a size or a table of measurements: first those that keep it from being
+    /// drafted, then those that keep the draft from being cut and sewn.
     pub fn check(&self, wearer: impl Into<Wearer>) -> Vec<Diagnostic> {
         Evaluation::new(self, wearer).check()
     }
 }
 
 impl Evaluation {
-    /// Everything that is wrong with the pattern as it was last evaluated.
+    /// All faults of the pattern as last evaluated.
     pub fn check(&self) -> Vec<Diagnostic> {
         let drafting = self.drafting();
         let mut diagnostics = drafting.diagnostics;
@@ -61,8 +61,9 @@ impl Evaluation {
         diagnostics
     }
 
-    /// Results of the seams' choice between the sides of the cloth: seams for which the draft takes another
-    /// copy than is written, and pieces that show their wrong side all the same.
+    /// Diagnostics of the choice of sides of the cloth: seams that take another copy of a panel than the
+    /// document gives, so that pieces show their right sides, and pieces that show their wrong side all the
+    /// same.
     pub fn check_sides(&self) -> Vec<Diagnostic> {
         let drafting = self.drafting();
         let mut found = drafting.diagnostics;
@@ -91,8 +92,8 @@ fn note_pleats(panel: &Panel, idle: &[OperationId], diagnostics: &mut Vec<Diagno
     }
 }
 
-/// Everything that keeps a draft from being cut and sewn, except differing lengths of seam sides: a draft
-/// does not know the ease of its seams.
+/// All faults that keep a draft from being cut and sewn, except that the lengths of seam sides are not
+/// compared: a draft does not know the ease of its seams.
 pub fn check_draft(draft: &Draft) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     check_pieces(draft, None, &mut diagnostics);
@@ -128,7 +129,7 @@ fn check_pieces(draft: &Draft, pattern: Option<&Pattern>, diagnostics: &mut Vec<
     }
 }
 
-/// Length of a span (m); none if its piece or edge is missing.
+/// Length of a span (m). `None`: its piece or edge is missing.
 fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
     let piece = draft.pieces.get(span.piece)?;
     let mut edges = piece.outline.iter().chain(piece.holes.iter().flatten());
@@ -136,7 +137,7 @@ fn span_length(draft: &Draft, span: &DraftSpan) -> Option<f64> {
     Some(edge.curve.length() * (span.to - span.from).abs())
 }
 
-/// Lengths of both sides of a seam (m); none if a span is missing.
+/// Lengths of both sides of a seam (m). `None`: a span is missing.
 fn side_lengths(draft: &Draft, seam: &DraftSeam) -> Option<[f64; 2]> {
     let length = |side: &[DraftSpan]| side.iter().map(|s| span_length(draft, s)).sum();
     let first: Option<f64> = length(&seam.sides[0]);
@@ -240,7 +241,7 @@ fn check_fabric(fabric: &Fabric, diagnostics: &mut Vec<Diagnostic>) {
     }
 }
 
-/// Twice the area a loop encloses (m2), positive counter-clockwise.
+/// Twice the area that a loop of edges encloses (m2), positive if it runs counter-clockwise.
 fn swept(edges: &[PieceEdge]) -> f64 {
     edges.iter().map(|edge| edge.curve.swept_area()).sum()
 }
@@ -342,7 +343,7 @@ impl PieceCheck<'_> {
         bad.is_none()
     }
 
-    /// Checks that each edge has a length and starts where the one before it ends.
+    /// Checks that each edge has a length and ends where the next edge starts.
     fn check_loop(&mut self, edges: &[PieceEdge]) -> bool {
         let mut closed = true;
         for (k, edge) in edges.iter().enumerate() {
@@ -435,7 +436,7 @@ impl PieceCheck<'_> {
         }
     }
 
-    /// The diagnostic place of a hole of the piece.
+    /// Diagnostic place of a hole of the piece.
     fn hole_place(&self, hole: &[PieceEdge]) -> Place {
         let id = self.piece.id.panel;
         let edge = match hole.first().map(|edge| edge.origin.name) {
@@ -486,7 +487,7 @@ impl PieceCheck<'_> {
     }
 }
 
-/// Loops as polylines: each point with the index of its edge, counted through all loops.
+/// Loops as polylines: each point has the index of its edge, counted on from one loop to the next.
 fn flattened(loops: &[&[PieceEdge]]) -> Vec<Vec<(Vec2, usize)>> {
     let mut edge = 0;
     let mut result = Vec::with_capacity(loops.len());

@@ -3,7 +3,7 @@
 use crate::{EdgeName, Name, Panel, PanelId, PartId, Pattern, Place};
 
 impl Pattern {
-    /// Description of a place, with the names of the parts.
+    /// Description of a diagnostic place, with the names of the parts.
     pub fn describe(&self, place: &Place) -> String {
         let panel = |id: PanelId| match self.panel(id) {
             Some(panel) => format!("panel {:?}", panel.name),
@@ -77,7 +77,8 @@ impl Pattern {
         }
     }
 
-    /// The name of an edge of a panel, or of the operation that made it; none if the panel has no such edge.
+    /// Name of an edge of a panel, or of the operation that made the edge. `None`: the panel has no such
+    /// edge.
     pub fn edge_name(&self, panel: PanelId, name: EdgeName) -> Option<&str> {
         let lineage = self.lineage(self.panel(panel)?);
         match name {
@@ -92,7 +93,7 @@ impl Pattern {
         }
     }
 
-    /// Every part of the document with its id and place.
+    /// All parts of the document, each with its id and its diagnostic place.
     pub fn parts(&self) -> Vec<(PartId, Place)> {
         let mut parts: Vec<(PartId, Place)> = Vec::new();
         parts.extend(self.sizes.iter().map(|s| (s.id.into(), Place::Size(s.id))));
@@ -135,7 +136,7 @@ impl Pattern {
 }
 
 impl Panel {
-    /// Every part inside the panel with its id and place.
+    /// All parts inside the panel, each with its id and its diagnostic place.
     pub fn own_parts(&self) -> Vec<(PartId, Place)> {
         let id = self.id;
         let mut parts: Vec<(PartId, Place)> = Vec::new();

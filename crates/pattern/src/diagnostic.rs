@@ -29,7 +29,7 @@ use std::fmt;
 /// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information only: the garment can be made.
     Note,
     /// The garment can be made, but probably not as meant.
     Warning,
@@ -42,21 +42,21 @@ pub enum Severity {
 pub enum Code {
     /// A formula has no value.
     Formula,
-    /// Formulas or points depend on each other in a circle.
+    /// The value of a formula or the position of a point depends on itself.
     Cycle,
     /// A spline cannot be drawn to the length that is set for it.
     OutOfReach,
     /// A measurement was not given and is taken from the pattern's base size.
     BorrowedMeasurement,
-    /// Something refers to a part that is not there.
+    /// A reference names a part that does not exist.
     MissingReference,
     /// Two parts have the same id or name.
     Duplicate,
     /// A number is infinite or not a number.
     NotFinite,
-    /// A number is beyond any garment.
+    /// A number is larger than any garment needs.
     TooLarge,
-    /// More parts than the program takes.
+    /// The pattern has more parts than the program accepts.
     TooMany,
     /// An outline has no edges or encloses nothing.
     EmptyOutline,
@@ -66,7 +66,7 @@ pub enum Code {
     SelfCrossing,
     /// An edge has no length.
     ZeroLengthEdge,
-    /// A hole is wound like its outline.
+    /// A hole runs the same way round as its outline.
     HoleWinding,
     /// A hole is not inside its outline.
     HoleOutside,
@@ -80,25 +80,26 @@ pub enum Code {
     DartOutside,
     /// A dart is not trued: no smooth line leads across its mouth.
     NotTrued,
-    /// An edge that runs on across a dart, a pleat or a seam has a kink there.
+    /// An edge that continues across a dart, a pleat or a seam has a kink there.
     Kink,
     /// A dart cannot be pivoted as asked.
     BadPivot,
-    /// A panel cannot be cut along this curve or line.
+    /// A panel cannot be cut along a curve or line.
     BadCut,
     /// A notch lies beyond its edge.
     NotchOffEdge,
-    /// A seam names a span that is not there.
+    /// A seam names a span of an edge that does not exist.
     MissingSpan,
-    /// A span's fractions are not between 0 and 1, or it has no length.
+    /// The fractions of a span are not between 0 and 1, or the span has no length.
     BadSpan,
     /// The two sides of a seam differ by more than its ease.
     SeamLength,
     /// A panel is sewn to nothing.
     NotSewn,
-    /// Seams take the other copy of a pair or half of a folded panel than is written.
+    /// So that pieces show their right sides, seams take another copy of a mirrored pair, or another half of
+    /// a folded panel, than the document gives.
     OtherCopy,
-    /// A piece shows its wrong side, or pieces are sewn to a ring that has no right side.
+    /// A piece shows its wrong side, or pieces are sewn into a ring with one side only, as a Moebius band.
     InsideOut,
     /// A fabric has an impossible property.
     BadFabric,
@@ -112,7 +113,7 @@ pub enum Code {
     AllowanceSwallowed,
     /// Along an edge the seam allowance is narrower than asked.
     AllowanceNarrow,
-    /// The seam allowances of a slit's or a bay's sides meet.
+    /// The seam allowances along the two sides of a slit or a bay overlap.
     SlitShut,
     /// A hole is filled or divided by its seam allowance.
     HoleShut,
@@ -126,13 +127,13 @@ pub enum Code {
     NoCutLine,
     /// A mirrored pair is cut an odd number of times.
     OddPair,
-    /// The file has a field this version does not know.
+    /// The file has a field that this version does not know.
     UnknownField,
-    /// The outline is too intricate to be checked within the budget.
+    /// The outline is too intricate: checking it takes more steps than are allowed.
     Unchecked,
-    /// A pleat is draped without being folded and pressed.
+    /// The garment is draped without folding and pressing a pleat.
     NotPressed,
-    /// An operation takes in nothing and leaves its panel as it was.
+    /// An operation takes in no cloth and leaves its panel unchanged.
     NoEffect,
 }
 
@@ -198,7 +199,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// A diagnostic of any severity.
+    /// A diagnostic of the given severity.
     pub fn new(
         severity: Severity,
         code: Code,

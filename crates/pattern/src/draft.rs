@@ -12,9 +12,9 @@ use toile_geometry::{Curve, Rigid, Vec2, Vec3};
 pub struct Draft {
     /// Name of the pattern.
     pub name: String,
-    /// Every piece that is cut: folded panels unfolded, one entry for each copy.
+    /// All pieces that are cut: one entry for each copy of a panel, with folded panels unfolded.
     pub pieces: Vec<Piece>,
-    /// Every seam between pieces, darts' seams included.
+    /// All seams between pieces, including the seams of darts.
     pub seams: Vec<DraftSeam>,
     /// Fabrics that the pieces are cut from.
     pub fabrics: Vec<Fabric>,
@@ -37,38 +37,39 @@ pub struct Piece {
     pub id: PieceId,
     /// Name to show, unique in the draft.
     pub name: String,
-    /// The closed outline: each edge ends where the next starts. Its winding decides the right
-    /// side of the cloth: seen from the right side it runs counter-clockwise.
+    /// The closed outline: each edge ends where the next starts. Seen from the right side of the cloth it
+    /// runs counter-clockwise.
     pub outline: Vec<PieceEdge>,
-    /// Closed holes, wound against the outline.
+    /// Closed holes; they run the other way round than the outline.
     pub holes: Vec<Vec<PieceEdge>>,
-    /// Lines drawn on the piece, which the mesh follows.
+    /// Lines drawn on the piece; edges of the mesh follow them.
     pub internal_lines: Vec<PieceLine>,
     /// Marks on the outline.
     pub notches: Vec<PieceNotch>,
-    /// Darts taken out of the piece, darts inside it too.
+    /// Darts taken out of the piece, including darts inside it.
     pub darts: Vec<StageDart>,
-    /// Arrows of the directions in which its darts and pleats are pressed.
+    /// Arrows in the directions in which the piece's darts and pleats are pressed.
     pub pressed: Vec<PressArrow>,
     /// Fold lines along which the piece was unfolded: a point on each (m) and its direction.
     pub folds: Vec<[Vec2; 2]>,
     /// Direction of the warp in the piece's plane (rad), from +x counter-clockwise.
     pub grain: f64,
-    /// Index into [`Draft::fabrics`].
+    /// Index of the piece's fabric in [`Draft::fabrics`].
     pub fabric: usize,
     /// Place of the piece on the body.
     pub worn: Worn,
-    /// Whether the piece is part of the garment (sewn to something, or the only panel), or only
-    /// cut (an extra copy, a facing that no seam names).
+    /// Whether the piece is part of the garment (sewn to another piece, or the only panel); otherwise it is
+    /// cut only (an extra copy, a facing that no seam names).
     pub sewn: bool,
 }
 
 /// The origin of an edge of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeOrigin {
-    /// The edge of the panel, or the edge that an operation made.
+    /// Name of the panel's edge, or of the edge that an operation made.
     pub name: EdgeName,
-    /// Half of a folded panel: 0 as drawn; each fold has one bit, set for the half beyond that fold.
+    /// Half of a folded panel: 0 is the half as drawn; each fold has one bit, which is set for the half
+    /// beyond that fold.
     pub half: u8,
 }
 
@@ -82,7 +83,7 @@ impl EdgeOrigin {
     }
 
     /// The dart that this edge is a leg of, and the number of the leg: 0 before the apex along the outline
-    /// and 1 after it; round a dart inside the panel 0 to 3.
+    /// and 1 after it; 0 to 3 round a dart inside the panel. `None`: the edge is no leg.
     pub fn leg(&self) -> Option<(OperationId, u16)> {
         match self.name {
             Name::Made {
@@ -100,24 +101,24 @@ impl EdgeOrigin {
 pub struct PieceEdge {
     /// Origin of the edge.
     pub origin: EdgeOrigin,
-    /// The curve of the edge, in the direction of the outline (m).
+    /// Curve of the edge, directed as the outline runs (m).
     pub curve: Curve,
     /// Width of the seam allowance outside the edge (m).
     pub seam_allowance: f64,
-    /// Shape of the cut line at the corner at the start of the edge.
+    /// Shape of the cut line at the corner where the edge starts.
     pub corner: EdgeCorner,
-    /// Whether the edge runs against the edge as drawn, as on a mirror image: the corner at its start is then
-    /// the corner at the end of the edge as drawn.
+    /// Whether the edge runs against its direction as drawn, as on a mirror image: the corner at its start is
+    /// then the corner at the end of the edge as drawn.
     pub reversed: bool,
 }
 
 /// A line inside a piece.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PieceLine {
-    /// The internal line of the panel, or a line that an operation made: a fold of a pleat or the line that
-    /// it is laid to.
+    /// Name of the panel's internal line, or of a line that an operation made: a fold of a pleat, or the line
+    /// that a fold is laid to.
     pub name: LineName,
-    /// Joined curves (m).
+    /// Curves of the line, joined end to start (m).
     pub curves: Vec<Curve>,
 }
 
@@ -126,47 +127,49 @@ pub struct PieceLine {
 pub struct PieceNotch {
     /// The notch of the panel.
     pub id: NotchId,
-    /// The edge it is on.
+    /// The edge that the notch is on.
     pub edge: EdgeOrigin,
     /// Shape of the notch.
     pub kind: NotchKind,
     /// Position on the outline (m).
     pub point: Vec2,
-    /// Unit direction into the piece.
+    /// Unit vector from the notch into the piece.
     pub inward: Vec2,
 }
 
-/// A stretch of one piece's edge, by fractions of its arc length; `from > to` walks it backwards.
+/// A stretch of one piece's edge, from one fraction of its arc length to another; if `from > to` it is walked
+/// backwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DraftSpan {
     /// Index into [`Draft::pieces`].
     pub piece: usize,
-    /// Index of the edge: outline edges first, then each hole's edges in order.
+    /// Index of the edge in the piece: first the edges of the outline, then those of each hole.
     pub edge: usize,
-    /// Arc-length fraction at which the span starts.
+    /// Fraction of the edge's arc length at which the span starts (1).
     pub from: f64,
-    /// Arc-length fraction at which the span ends.
+    /// Fraction of the edge's arc length at which the span ends (1).
     pub to: f64,
 }
 
-/// Two chains of spans that are sewn together: the start of one to the start of the other.
+/// Two chains of spans that are sewn together, beginning at the start of each chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DraftSeam {
-    /// The seam of the document, or the seam a dart makes.
+    /// The seam of the document, or the dart that the seam closes.
     pub id: SeamOrigin,
     /// Name to show.
     pub name: String,
     /// Both chains, each in walking order.
     pub sides: [Vec<DraftSpan>; 2],
-    /// Whether the longer side is gathered or eased on purpose, so that its strain is expected.
+    /// Whether the longer side is gathered or eased on purpose: its strain is then no fault.
     pub gathered: bool,
     /// Whether right sides lie together before sewing (the usual seam).
     pub right_sides_together: bool,
-    /// Whether more than two plies may meet here, so that merging may leave a non-manifold edge.
+    /// Whether more than two plies may meet at the seam: merging the sides may then leave a non-manifold
+    /// edge.
     pub multi_ply: bool,
 }
 
-/// The origin of a seam of the draft.
+/// The source of a seam of the draft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum SeamOrigin {
     /// A seam of the document.
@@ -177,7 +180,7 @@ pub enum SeamOrigin {
         dart: OperationId,
         /// The copy of the panel.
         copy: u32,
-        /// Half of a folded panel.
+        /// Half of a folded panel that the dart is on.
         half: u8,
     },
 }
@@ -185,24 +188,24 @@ pub enum SeamOrigin {
 /// Place of a piece on the body before it is sewn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Worn {
-    /// Wrapped round a body part by the program.
+    /// Wrapped round a body part.
     Wrapped {
         /// The body part.
         part: BodyPart,
         /// The side of the body part.
         facing: Facing,
-        /// Height of the piece's reference point above the floor (m), for an arm its distance along the arm
-        /// from the shoulder point; none lets the program choose.
+        /// Height of the piece's reference point above the floor (m); for an arm, distance of that point
+        /// along the arm from the shoulder point. `None`: the program decides.
         level: Option<f64>,
     },
-    /// Placed in space at a given position: world from piece.
+    /// Placed in space by a rigid transformation from the piece to the world.
     Placed(Rigid),
     /// No place is given: the program decides from the seams.
     Automatic,
 }
 
 impl Worn {
-    /// The place of the mirror image: on the other side of the body.
+    /// Place of the mirror image of the piece: on the other side of the body.
     #[must_use]
     pub(crate) fn mirror_image(self) -> Self {
         match self {
@@ -244,7 +247,8 @@ impl Worn {
     }
 }
 
-/// Whether left and right of this body part are the wearer's own. On an arm they are above and below.
+/// Whether `Left` and `Right` of this body part are the wearer's left and right. On an arm they are above and
+/// below.
 fn is_middle(part: BodyPart) -> bool {
     !matches!(part, BodyPart::LeftArm | BodyPart::RightArm)
 }
@@ -252,7 +256,7 @@ fn is_middle(part: BodyPart) -> bool {
 /// Direction in which a dart or a pleat is pressed: an arrow in the plane of its panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressArrow {
-    /// The dart or pleat.
+    /// The dart or pleat that is pressed.
     pub by: OperationId,
     /// Half of a folded panel that the arrow is on.
     pub half: u8,
@@ -265,7 +269,7 @@ pub struct PressArrow {
 }
 
 impl PressArrow {
-    /// The mirror image in the y axis, for the other piece of a pair.
+    /// The arrow mirrored in the y axis, for the mirrored piece of a pair.
     #[must_use]
     pub fn mirror_image(self) -> Self {
         let flip = |v: Vec2| Vec2::new(-v.x, v.y);

@@ -25,18 +25,17 @@ pub(crate) struct Drafting {
 }
 
 impl Pattern {
-    /// The draft for a size or a table of measurements, and a diagnostic for each part that is kept out
-    /// of it.
+    /// The draft for a size or a table of measurements, and diagnostics.
     ///
-    /// Measurements that are not given are taken from the base size, with a note. Panels that
-    /// cannot be drawn and seams that cannot be walked are left out, with an error each.
+    /// Measurements that are not given are taken from the base size, with a note for each. Panels that cannot
+    /// be drawn and seams that cannot be walked are left out of the draft, with an error for each.
     pub fn resolve(&self, wearer: impl Into<Wearer>) -> (Draft, Vec<Diagnostic>) {
         Evaluation::new(self, wearer).draft()
     }
 }
 
 impl Evaluation {
-    /// The draft of the pattern as last evaluated, and a diagnostic for each part that is kept out of it.
+    /// The draft of the pattern as last evaluated, and a diagnostic for each part that is left out of it.
     pub fn draft(&self) -> (Draft, Vec<Diagnostic>) {
         let drafting = self.drafting();
         (drafting.draft, drafting.diagnostics)
@@ -67,8 +66,8 @@ impl Evaluation {
     }
 }
 
-/// A stretch of a named edge on a piece: index of the piece's edge, and the shares of the named edge that
-/// it covers.
+/// A stretch of a named edge on a piece: index of the piece's edge, and the two shares of the named edge
+/// between which the stretch lies.
 #[derive(Clone, Copy)]
 struct Track {
     edge: usize,
@@ -81,7 +80,7 @@ type Tracks = BTreeMap<EdgeOrigin, Vec<Track>>;
 struct Drafter<'a> {
     evaluation: &'a Evaluation,
     drafting: Drafting,
-    /// Index of each piece in the draft, with the stretches of its named edges.
+    /// For each piece, its index in the draft and the stretches of its named edges.
     tracks: BTreeMap<PieceId, (usize, Tracks)>,
 }
 
@@ -92,7 +91,7 @@ impl Drafter<'_> {
     }
 
     fn panel(&mut self, panel: &Panel) {
-        // The sides of the panel are cut in its place.
+        // The sides of a split panel are cut instead of it.
         if panel.is_split() {
             return;
         }
@@ -165,7 +164,7 @@ impl Drafter<'_> {
         }
     }
 
-    /// A name for a copy that no other piece has.
+    /// A name for a copy of a panel that no other piece has.
     fn piece_name(&self, panel: &Panel, copy: u32, flipped: bool) -> String {
         let base = match (copy, flipped) {
             (0, _) => panel.name.clone(),
@@ -278,7 +277,8 @@ impl Drafter<'_> {
         self.drafting.draft.seams = seams;
     }
 
-    /// Seams of the document, on the copies and halves with which the pieces show their right sides.
+    /// Seams of the document, on those copies and halves of panels with which the pieces show their right
+    /// sides.
     fn seams(&mut self) {
         let evaluation = self.evaluation;
         let seams = evaluation.pattern().seams.iter();
@@ -339,7 +339,7 @@ impl Drafter<'_> {
         self.tell_exchanges((&walked, &spans), &exchanged);
     }
 
-    /// A span on its piece, in walking order.
+    /// A span of a seam as stretches of edges of its piece, in walking order.
     fn spans(&self, span: &SpanValue) -> Vec<DraftSpan> {
         let Some((piece, tracks)) = self.tracks.get(&piece_id(span)) else {
             return Vec::new();
@@ -352,8 +352,8 @@ impl Drafter<'_> {
         parts.collect()
     }
 
-    /// The copy or half that may be taken instead of the one that a span is on; none unless all of the span
-    /// is there too.
+    /// The twin of a span: the other copy or half of the panel that the span may be moved to. `None`: the
+    /// whole span does not exist there.
     fn twin(&self, span: &SpanValue) -> Option<Twin> {
         let panel = self.evaluation.pattern().panel(span.panel)?;
         let twin = match folds(panel) {
@@ -366,7 +366,8 @@ impl Drafter<'_> {
         (self.spans(&there).len() == count).then_some(twin)
     }
 
-    /// Reports the seams that take another copy or half than is written, with one note for each panel.
+    /// Reports the seams for which another copy or half is taken than the document gives, with one note for
+    /// each panel.
     fn tell_exchanges(
         &mut self,
         (walked, spans): (&[(&Seam, &SeamValue)], &[SeamSpan<'_>]),
@@ -391,7 +392,8 @@ impl Drafter<'_> {
         }
     }
 
-    /// Marks the pieces that seams sew; without any, the first piece if all are copies of one panel.
+    /// Marks the pieces that seams join as sewn; without a seam, the first piece if all pieces are copies of
+    /// one panel.
     fn mark_sewn(&mut self) {
         let draft = &mut self.drafting.draft;
         for seam in &draft.seams {
@@ -408,7 +410,7 @@ impl Drafter<'_> {
     }
 }
 
-/// The piece a span is on.
+/// The piece that a span is on.
 fn piece_id(span: &SpanValue) -> PieceId {
     PieceId {
         panel: span.panel,
@@ -416,11 +418,12 @@ fn piece_id(span: &SpanValue) -> PieceId {
     }
 }
 
-/// An edge made by an operation, as its closing seam walks it: role, index, and whether against
-/// its direction.
+/// An edge made by an operation, as the seam that closes it walks it: role, index, and whether the edge is
+/// walked backwards.
 type Walked = (Role, u16, bool);
 
-/// Both sides of the seam with which an operation closes the edges that it made; none if it makes no seam.
+/// Both sides of the seam with which an operation closes the edges that it made. `None`: the operation makes
+/// no seam.
 fn closing(kind: &OperationKind) -> Option<[Vec<Walked>; 2]> {
     let leg = |index: u16, reverse: bool| (Role::Leg, index, reverse);
     match kind {
@@ -448,7 +451,7 @@ fn folds(panel: &Panel) -> u32 {
     (folds.count() as u32).min(7)
 }
 
-/// The parts of a named edge between two shares, in walking order.
+/// The parts of a piece's edges between two shares of a named edge, in walking order.
 fn spans_on<'t>(
     piece: usize,
     tracks: impl Iterator<Item = &'t Track>,
@@ -485,7 +488,7 @@ fn spans_on<'t>(
     parts.into_iter().map(|(_, span)| span).collect()
 }
 
-/// A share of an edge, moved to 0 or 1 if it differs from that by rounding alone.
+/// A share of an edge (1), set to 0 or 1 if it differs from that by rounding alone.
 fn whole_at_ends(share: f64) -> f64 {
     match share {
         _ if share < 1e-12 => 0.0,

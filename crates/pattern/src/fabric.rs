@@ -13,14 +13,14 @@ use crate::{FabricId, fields};
 use toile_fabric::Material;
 use visit::{Presence, VisitFigures};
 
-/// A fabric of the document: a material on a roll.
+/// A fabric of the document: a material, and the roll that it comes on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fabric {
-    /// The fabric of the document.
+    /// Identifier of the fabric.
     pub id: FabricId,
     /// Name to show.
     pub name: String,
-    /// Figures of the cloth.
+    /// The material: the figures of the cloth.
     pub material: Material,
     /// Width of the roll (m).
     pub width: f64,

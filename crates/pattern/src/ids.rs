@@ -49,7 +49,7 @@ macro_rules! ids {
                 }
             }
 
-            /// Returns the part itself as the error if it is of another kind.
+            /// Fails if the part is of another kind; the error is the part.
             impl TryFrom<PartId> for $name {
                 type Error = PartId;
 
@@ -125,11 +125,11 @@ ids! {
     GuideId Guide "guide",
 }
 
-/// The source of new ids. The counter never goes back.
+/// The source of new ids. Its counter never decreases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Ids {
-    /// The next number.
+    /// The number that the next new id gets.
     pub next: u32,
 }
 
@@ -141,11 +141,11 @@ impl Ids {
         FreshId(number).into()
     }
 
-    /// Makes sure that a number is never used for a new id.
+    /// Makes sure that no new id gets this number.
     pub fn reserve(&mut self, number: u32) {
         self.next = self.next.max(number.saturating_add(1));
     }
 }
 
-/// A number just taken, before it becomes an id.
+/// A new number from [`Ids`], before it becomes an id of some kind.
 pub struct FreshId(u32);

@@ -9,11 +9,11 @@ use crate::{
 };
 use toile_geometry::{Curve, Vec2};
 
-/// Positions closer than this count as the same (m).
+/// Largest distance between positions that count as equal (m).
 const SAME: f64 = 1e-7;
 
 impl Evaluation {
-    /// A diagnostic for each kink that is not marked as intended, once for all copies and halves of a panel.
+    /// Diagnostics for kinks that are not marked as intended, each once for all copies and halves of a panel.
     pub(crate) fn kinks(&self, draft: &Draft) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         for seam in &draft.seams {

@@ -8,23 +8,23 @@ use strum::EnumIter;
 /// A mark: a position on a line of a panel.
 #[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum Mark {
-    /// The position of a notch of the panel.
+    /// The mark is at a notch of the panel.
     Notch(crate::NotchId),
-    /// At a distance from a corner along the line, against its direction if negative (m).
+    /// The mark is at a distance from a corner along the line.
     Along {
         /// The corner.
         from: CornerName,
-        /// Distance from the corner (m).
+        /// Distance from the corner (m); negative against the direction of the line.
         distance: Number,
     },
-    /// A share of the way along the line from a corner to one that follows.
+    /// The mark is at a share of the way along the line from a corner to a later corner.
     Between {
         /// The corners.
         ends: [CornerName; 2],
-        /// Plain share of the arc length.
+        /// Share of the arc length between the corners (1).
         share: Number,
     },
-    /// A corner.
+    /// The mark is at a corner.
     Corner(CornerName),
 }
 
@@ -57,7 +57,7 @@ impl Mark {
         }
     }
 
-    /// The distance or share of the mark; none for a corner and a notch.
+    /// The distance or share of the mark. `None`: the mark is a corner or a notch.
     pub fn number(&self) -> Option<&Number> {
         match self {
             Self::Along { distance, .. } => Some(distance),

@@ -8,15 +8,15 @@ use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Name<Id> {
-    /// Drawn: a point, an edge or a line of the document.
+    /// The part is drawn: a point, an edge or a line of the document.
     Drawn(Id),
-    /// Made by an operation.
+    /// The part was made by an operation.
     Made {
         /// The operation.
         by: OperationId,
         /// Role of the part in that operation.
         role: Role,
-        /// Number among several of the same role, from 0 in the order of the outline.
+        /// Number among the parts that have this role in the operation, from 0 in the order of the outline.
         index: u16,
     },
 }
@@ -28,7 +28,7 @@ impl<Id: Default> Default for Name<Id> {
 }
 
 impl<Id> Name<Id> {
-    /// The operation that made the part; none if it was drawn.
+    /// The operation that made the part. `None`: the part is drawn.
     pub fn maker(&self) -> Option<OperationId> {
         match self {
             Self::Drawn(_) => None,
@@ -36,7 +36,7 @@ impl<Id> Name<Id> {
         }
     }
 
-    /// Role in the operation that made the part; none if it was drawn.
+    /// Role of the part in the operation that made it. `None`: the part is drawn.
     pub fn role(&self) -> Option<Role> {
         match self {
             Self::Drawn(_) => None,
@@ -52,7 +52,7 @@ pub type EdgeName = Name<EdgeId>;
 /// Name of a line of a panel.
 pub type LineName = Name<LineId>;
 
-/// Role of a made corner, edge or line in its operation.
+/// Role of a corner, edge or line in the operation that made it.
 #[derive(
     Clone,
     Copy,
@@ -73,7 +73,7 @@ pub type LineName = Name<LineId>;
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Role {
-    /// A leg of a dart: 0 before the apex along the outline, 1 after it; of a diamond 0 to 3.
+    /// A leg of a dart: 0 before the apex along the outline, 1 after it; 0 to 3 round a diamond dart.
     #[default]
     Leg,
     /// The apex of a dart.
@@ -85,16 +85,17 @@ pub enum Role {
     /// Edges that bridge the openings of a spread panel: cut n has opening 2n at its start and 2n + 1 at its
     /// end. Opening k has the corners 2k and 2k + 1.
     Opening,
-    /// The cut of a split panel: corners 0 and 1 at its start and end; the cut is edge 0 of one side and, in
-    /// the other direction, edge 1 of the other.
+    /// The cut of a split panel, with corners 0 and 1 at its start and end. On one side panel the cut is edge
+    /// 0; on the other side panel it runs in the other direction and is edge 1.
     Split,
-    /// Edges and corners of the underlay of a pleat at the ends of its line: pleat n has edges 8n to 8n + 3
-    /// at the start of its line, from one part to the other, and 8n + 4 to 8n + 7 at the end, and corners 10n
-    /// to 10n + 4 at the start and 10n + 5 to 10n + 9 at the end.
+    /// Edges and corners of the underlay of a pleat, at the ends of the pleat line. Pleat n has edges 8n to
+    /// 8n + 3 at the start of its line, from one part of the panel to the other, and 8n + 4 to 8n + 7 at the
+    /// end; and corners 10n to 10n + 4 at the start and 10n + 5 to 10n + 9 at the end.
     Underlay,
-    /// A line along which a pleat is folded: pleat n has lines 5n to 5n + 4 from one part to the other.
+    /// A line along which a pleat is folded. Pleat n has lines 5n to 5n + 4, from one part of the panel to
+    /// the other.
     Crease,
-    /// A line to which a fold of a pleat is laid, numbered as creases are.
+    /// A line to which a fold of a pleat is laid; numbered like creases.
     Placement,
 }
 
@@ -117,7 +118,7 @@ pub enum PartReference {
     Point(PointId),
     /// A curve of a sheet.
     Curve(CurveId),
-    /// The stretch of a panel's line from a corner to one that follows it.
+    /// The stretch of a panel's line from one corner to a later one.
     Stretch {
         /// The panel.
         panel: PanelId,
@@ -126,12 +127,12 @@ pub enum PartReference {
     },
     /// A seam.
     Seam(crate::SeamId),
-    /// A text that names no part of the document.
+    /// A text that names no part of the document as it was read.
     Unknown(Box<str>),
 }
 
 impl PartReference {
-    /// The part itself; for a stretch its panel and the parts by which its corners are named.
+    /// The part itself; for a stretch, its panel and the parts that the names of its corners contain.
     pub fn parts(&self) -> Vec<PartId> {
         match self {
             Self::Point(id) => vec![(*id).into()],

@@ -18,24 +18,24 @@ use crate::SizeId;
 use crate::formula::Formula;
 use serde::{Deserialize, Serialize};
 
-/// A number of the document. The field that holds it decides its quantity: lengths are in metres, angles in
-/// radians, shares are plain.
+/// A number of the document. Its field decides the quantity: lengths are in metres, angles in radians, shares
+/// are plain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Number {
     /// A value (m), (rad) or plain.
     Value(f64),
     /// A formula.
     Formula(Formula),
-    /// A formula with an adjustment added by hand (m), (rad) or plain.
+    /// A formula and an adjustment, made by hand, that is added to its value.
     Adjusted {
         /// The formula.
         formula: Formula,
-        /// The adjustment added to the formula.
+        /// The adjustment (m), (rad) or plain.
         by: f64,
     },
-    /// A number with own values for some sizes.
+    /// A number that has other values for some sizes.
     PerSize {
-        /// The number in all other sizes.
+        /// The number for all other sizes.
         usual: Box<Number>,
         /// Sizes and their values (m), (rad) or plain.
         sizes: Vec<(SizeId, f64)>,
@@ -46,7 +46,7 @@ impl Number {
     /// Zero.
     pub const ZERO: Self = Self::Value(0.0);
 
-    /// The value, if it does not depend on measurements (m), (rad) or plain.
+    /// The value (m), (rad) or plain. `None`: it may depend on measurements or on the size.
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Value(value) => Some(*value),
@@ -63,7 +63,7 @@ impl Number {
         }
     }
 
-    /// Whether every value written in the number is finite.
+    /// Whether all values in the number are finite; formulas count as finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Value(value) => value.is_finite(),

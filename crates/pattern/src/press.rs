@@ -6,9 +6,9 @@ use crate::{
     StageLine,
 };
 
-/// Distance of an arrow from the edge, as a share of the length of the dart or pleat (1).
+/// Distance of an arrow from the edge, over the length of the dart or pleat (1).
 const IN: f64 = 0.3;
-/// Number of lines that a pleat makes: folds and the lines that they are laid to.
+/// Number of lines that a pleat has: fold lines, and lines that the folds are laid to.
 const LINES: u16 = 5;
 
 /// The arrows of the darts and pleats of a panel.
@@ -23,7 +23,7 @@ pub fn press_arrows(stage: &Stage, pattern: &Pattern, panel: &Panel) -> Vec<Pres
         };
         let step = pattern.operation_of(panel, dart.by);
         let [open, close] = dart.mouth;
-        // On a mirror image the outline meets the leg after the apex first.
+        // On a mirrored half the outline passes the leg after the apex first.
         let is_mirrored = dart.half.count_ones() % 2 == 1;
         let across = match (dart.pressed == Pressed::Before) != is_mirrored {
             true => open - close,
@@ -72,7 +72,7 @@ fn pleat_arrows(
     let Some(middle) = at(placement) else {
         return;
     };
-    // The inner creases beside the placement line, at which the cloth under a fold turns back.
+    // The creases next to the placement line, along which the cloth under the fold turns back.
     let turns = stage.lines.iter().filter_map(|line| match line.name {
         Name::Made {
             by,
@@ -88,8 +88,8 @@ fn pleat_arrows(
         Name::Drawn(_) | Name::Made { .. } => None,
     });
     for turn in turns {
-        // The underlay extends outward from the placement line, under the part beside it; under a box pleat
-        // it extends inward.
+        // The underlay reaches from the placement line outward, under the part beside it; under a box pleat
+        // it reaches inward.
         let across = match kind {
             PleatKind::Knife | PleatKind::Inverted => turn - middle,
             PleatKind::Box => middle - turn,

@@ -5,24 +5,24 @@ use crate::Pattern;
 /// The sizes that are printed, laid or checked.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum SizeSelection {
-    /// The pattern as drafted: in its base size, if it has a table of sizes.
+    /// The pattern as drafted; this is its base size if it has a table of sizes.
     #[default]
     Base,
-    /// Sizes of the pattern, each with its number of garments.
+    /// Sizes of the pattern by name, each with the number of garments.
     Named(Vec<(String, u32)>),
-    /// Every size, one garment of each.
+    /// All sizes, with one garment of each.
     All,
 }
 
 impl SizeSelection {
-    /// One garment of one size.
+    /// One garment of the size with this name.
     pub fn one(name: impl Into<String>) -> Self {
         Self::Named(vec![(name.into(), 1)])
     }
 
-    /// The selected sizes of a pattern, each with its number of garments; a size without a name is the
-    /// pattern as drafted. Names are looked up later, when the sizes are drafted. None if all sizes are
-    /// selected of a pattern that has no table of sizes.
+    /// The selected sizes of a pattern, each with its number of garments. A size without a name means the
+    /// pattern as drafted. Names are looked up later, when the sizes are drafted. `None`: all sizes are
+    /// selected, but the pattern has no table of sizes.
     pub fn of(&self, pattern: &Pattern) -> Option<Vec<(Option<String>, u32)>> {
         match self {
             Self::Base => Some(vec![(None, 1)]),

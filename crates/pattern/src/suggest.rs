@@ -1,9 +1,9 @@
 //! Suggests the known name nearest to an unknown one.
 
-/// Longest beginning of a name that is compared (characters).
+/// Number of characters at the beginning of a name that are compared.
 const COMPARED: usize = 40;
 
-/// The known name nearest to `name`, if it is near enough for a suggestion.
+/// The known name most similar to `name`, if it is similar enough to be suggested.
 pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let wanted: Vec<char> = name.chars().take(COMPARED).collect();
     known

@@ -1,14 +1,14 @@
 //! Quantities that a number may be required to have.
 
-/// The quantity that a number must have.
+/// The quantity that a number is required to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Want {
     /// A length (m).
     Length,
     /// A plain number.
     Plain,
-    /// An angle (rad): computed as a plain number, typed and shown in degrees.
+    /// An angle (rad). Formulas compute it as a plain number; it is typed and shown in degrees.
     Angle,
-    /// Any quantity, as for a variable: a number without unit is plain.
+    /// Any quantity, as for variables; a number without unit is then plain.
     Any,
 }

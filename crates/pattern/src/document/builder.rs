@@ -7,7 +7,7 @@ use super::{
 use crate::{CurveId, EdgeId, FabricId, Ids, LineId, Mark, Name, PanelId, PointId, SheetId};
 use std::sync::Arc;
 
-/// A sheet and the panel traced from it, while both are built.
+/// A sheet and the panel traced from it, while they are being built.
 #[derive(Debug)]
 pub struct PanelBuilder<'i> {
     ids: &'i mut Ids,
@@ -73,12 +73,12 @@ impl<'i> PanelBuilder<'i> {
         id
     }
 
-    /// A fresh id.
+    /// A new id.
     pub fn id<T: From<crate::FreshId>>(&mut self) -> T {
         self.ids.take()
     }
 
-    /// The finished sheet and panel.
+    /// The finished sheet and the finished panel.
     pub fn done(self) -> (Arc<Sheet>, Arc<Panel>) {
         (Arc::new(self.sheet), Arc::new(self.panel))
     }
@@ -96,7 +96,7 @@ impl CurveRule {
 }
 
 impl Panel {
-    /// The span of a whole edge on copy 0, in the direction of the edge; none if the panel has no such edge.
+    /// The span of a whole edge on copy 0, in the direction of the edge. `None`: the panel has no such edge.
     pub fn span(&self, edge: EdgeId) -> Option<Span> {
         let line = self.line_of(edge)?;
         let ends = self.edge(edge)?.ends;
@@ -113,7 +113,7 @@ impl Panel {
 }
 
 impl Pattern {
-    /// Adds a sheet and a panel.
+    /// Adds a sheet and the panel traced from it.
     pub fn add(&mut self, (sheet, panel): (Arc<Sheet>, Arc<Panel>)) {
         self.sheets.push(sheet);
         self.panels.push(panel);

@@ -31,8 +31,8 @@ pub(super) struct ClothRecord {
     given: Vec<String>,
 }
 
-/// Names of the settings that must be listed as given, collected while the record is written: a setting that
-/// is left open is written as its default, and one that is given and equal to its default is listed.
+/// Names of the settings that are given and equal to their default, collected while a record is written. A
+/// record writes the default for a setting that is not given; the list of names tells the two apart.
 struct Written(Vec<String>);
 
 impl Written {
@@ -45,8 +45,8 @@ impl Written {
 }
 
 impl ClothRecord {
-    /// The record of a marker's fabric, of whether all pieces lie on it whatever the garment is cut from, and
-    /// of its settings.
+    /// The record of a marker's fabric and settings. `keeps_fabric`: all pieces lie on this fabric, even if
+    /// the garment is cut from another.
     pub(super) fn new(fabric: FabricId, keeps_fabric: bool, cloth: ClothSettings) -> Self {
         let usual = usual(cloth.spread.unwrap_or_default());
         let mut written = Written(Vec::new());
@@ -87,7 +87,7 @@ impl ClothRecord {
         }
     }
 
-    /// The fabric of the marker, and whether all pieces lie on it.
+    /// The fabric of the marker, and whether all pieces lie on it even if the garment is cut from another.
     pub(super) const fn fabric(&self) -> (FabricId, bool) {
         (self.fabric, self.keeps_fabric)
     }

@@ -111,7 +111,7 @@ fields!(Print, |self, v| {
     });
 });
 
-/// A flaw: a rectangle of the fabric as laid open.
+/// A flaw: a rectangle of the fabric, measured with the fabric laid open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flaw {
     /// Corner of the flaw nearest to the start of the fabric: along the warp and across (m).
@@ -151,15 +151,15 @@ pub struct Roll {
     pub name: Option<String>,
     /// Full width of the roll (m).
     pub width: Option<f64>,
-    /// Length of the roll, all plies together (m); without one the roll is as long as needed.
+    /// Length of the roll, all plies together (m); `None`: as long as needed.
     pub length: Option<f64>,
     /// Price of a metre of the roll's length.
     pub price_per_metre: Option<f64>,
-    /// Flaws of the roll; an empty list says that the roll has none.
+    /// Flaws of the roll; an empty list: the roll has no flaws.
     pub flaws: Option<Vec<Flaw>>,
 }
 
-/// Visits a field that may be left out: first whether it is there, then its value.
+/// Visits a field that may be left out: first whether it is given, then its value.
 macro_rules! given {
     ($v:ident, $field:ident) => {
         given!($v, $field, key(stringify!($field)))
@@ -172,7 +172,7 @@ macro_rules! given {
     };
 }
 
-/// Visits a list that may be left out, or be there and empty.
+/// Visits a list that may be left out or may be given and empty.
 macro_rules! given_list {
     ($v:ident, $field:ident) => {
         $v.optional(stringify!($field), $field);
@@ -197,13 +197,13 @@ fields!(Roll, |self, v| {
     given_list!(v, flaws);
 });
 
-/// Settings of how fabric is laid to be cut. A setting that is not given is taken from the next lower level:
-/// other settings, the fabric, the default.
+/// Settings of how fabric is laid to be cut. A setting that is not given (`None`) is taken from the next
+/// lower level: other settings, then the fabric, then the default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClothSettings {
-    /// Full width of the fabric laid open, of a tube its girth (m).
+    /// Full width of the fabric laid open (m); for a tube its girth.
     pub width: Option<f64>,
-    /// Length of fabric at hand, all plies together (m); by default as much as needed.
+    /// Length of fabric at hand, all plies together (m); by default as long as needed.
     pub length: Option<f64>,
     /// Width of the unusable edge at either side (m).
     pub selvedge: Option<f64>,
@@ -217,7 +217,7 @@ pub struct ClothSettings {
     pub tilt: Option<f64>,
     /// Way of spreading the fabric.
     pub spread: Option<Spread>,
-    /// Number of plies cut at once; the second layer of a fold does not count.
+    /// Number of plies cut at once. Folded fabric counts as one ply, though it has two layers.
     pub plies: Option<u32>,
     /// Price of a metre of the fabric's length.
     pub price_per_metre: Option<f64>,
@@ -225,9 +225,9 @@ pub struct ClothSettings {
     pub currency: Option<String>,
     /// Repeating print of the fabric.
     pub print: Option<Print>,
-    /// Flaws that no piece may lie on; an empty list says that there are none.
+    /// Flaws that no piece may lie on; an empty list: the fabric has no flaws.
     pub flaws: Option<Vec<Flaw>>,
-    /// Rolls at hand, filled in this order. Without any there is as much fabric as needed.
+    /// Rolls at hand, filled in this order; without a roll, as much fabric as needed.
     pub rolls: Option<Vec<Roll>>,
 }
 
@@ -272,7 +272,7 @@ fields!(ClothSettings, |self, v| {
 pub struct LaidCloth {
     /// Full width of the fabric laid open (m).
     pub width: f64,
-    /// Length of fabric at hand, all plies together (m); none means as much as needed.
+    /// Length of fabric at hand, all plies together (m); `None`: as long as needed.
     pub length: Option<f64>,
     /// Width of the unusable edge at either side (m).
     pub selvedge: f64,
@@ -301,7 +301,7 @@ pub struct LaidCloth {
 }
 
 impl ClothSettings {
-    /// These settings completed by others: settings left open here are taken from those below.
+    /// These settings, with each setting that is not given taken from `below`.
     #[must_use]
     pub fn over(self, below: &Self) -> Self {
         let Self {
@@ -338,8 +338,8 @@ impl ClothSettings {
         }
     }
 
-    /// The settings for laying a fabric: settings left open are taken from the fabric itself, else from the
-    /// defaults. None if neither the settings nor the fabric give a width.
+    /// The settings for laying a fabric: settings that are not given are taken from the fabric `own`, else
+    /// from the defaults. `None`: neither the settings nor the fabric give a width.
     pub fn resolved(&self, own: Option<&Fabric>) -> Option<LaidCloth> {
         let spread = self.spread.unwrap_or_default();
         let own_nap = match own.is_some_and(|fabric| fabric.nap) {
@@ -364,7 +364,7 @@ impl ClothSettings {
         })
     }
 
-    /// The first setting with which no fabric can be laid.
+    /// Fault of the first setting whose value is not allowed.
     pub fn fault(&self) -> Option<FieldFault> {
         let sound = |value: f64| value.is_finite() && value >= 0.0;
         let numbers = [

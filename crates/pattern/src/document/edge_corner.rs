@@ -7,7 +7,7 @@ use strum::{EnumIter, VariantArray, VariantNames};
 
 impl Choice for Corner {}
 
-/// Settings of a corner at the start of an edge.
+/// Settings of the corner at the start of an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(from = "WrittenCorner")]
 pub struct EdgeCorner {
@@ -15,7 +15,7 @@ pub struct EdgeCorner {
     pub kind: Corner,
     /// Limit of the cut line's distance from the corner.
     pub limit: MitreLimit,
-    /// Whether a kink at this corner is intended, where the line runs on into another panel across a seam.
+    /// Whether a kink at this corner is intended, where the line continues on another panel across a seam.
     pub meant: bool,
 }
 
@@ -31,7 +31,7 @@ fields!(EdgeCorner, |self, v| {
     v.value(key("meant").left_out_if(!*meant), meant);
 });
 
-/// A corner as a journal writes it: earlier versions wrote its kind alone, or nothing.
+/// A corner as a journal stores it: earlier versions wrote only its kind, or left it out.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum WrittenCorner {
@@ -55,13 +55,13 @@ impl From<WrittenCorner> for EdgeCorner {
     }
 }
 
-/// Limit of the distance of the cut line from its corner.
+/// Limit of the distance of the cut line from a corner of the seam line.
 #[derive(Clone, Copy, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MitreLimit {
-    /// This many times the wider of the two allowances; a longer mitre is cut off.
+    /// This many times the wider of the two allowances (1); a longer mitre is cut off.
     Widths(f64),
-    /// No limit: both lines run on until they meet.
+    /// No limit: both cut lines are extended until they meet.
     None,
 }
 
@@ -109,15 +109,16 @@ impl Default for MitreLimit {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Corner {
-    /// Both cut lines run on until they meet.
+    /// Both cut lines are extended until they meet.
     #[default]
     Mitre,
     /// The mitre is cut off straight.
     Bevel,
-    /// The cut line turns square to the edge after the corner.
+    /// The cut line is square to the edge after the corner.
     Square,
-    /// The seam lines run on into the allowances.
+    /// Both seam lines are extended into the allowances, up to the cut lines.
     Extended,
-    /// The neighbour's cut line mirrored in the edge after the corner, as a hem needs.
+    /// The cut line of the edge before, mirrored in the edge after the corner, so that a hem lies flush when
+    /// turned up.
     Mirrored,
 }

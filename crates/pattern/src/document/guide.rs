@@ -14,7 +14,8 @@ pub struct Guide {
     pub id: GuideId,
     /// Direction of the guide.
     pub runs: GuideRun,
-    /// Place of the guide on the table (m): its height if horizontal, else its distance to the right.
+    /// Place of the guide on the table (m): height of a horizontal guide, distance to the right of a vertical
+    /// one.
     pub at: f64,
 }
 
@@ -32,11 +33,11 @@ pub enum GuideRun {
     /// From left to right.
     #[default]
     Horizontal,
-    /// From below upward.
+    /// From bottom to top.
     Vertical,
 }
 
-// The field for the place, `x` or `y`, also tells the direction: it belongs to the guide alone.
+// The field for the place of a guide, `x` or `y`, also gives its direction, so the direction has no field.
 fields!(
     GuideRun,
     |self, _v| {},
@@ -48,7 +49,7 @@ fields!(
 );
 
 impl GuideRun {
-    /// The field of files for the place of such a guide.
+    /// Name of the file field for the place of a guide with this direction.
     fn key(self) -> &'static str {
         match self {
             Self::Horizontal => "y",
@@ -56,7 +57,8 @@ impl GuideRun {
         }
     }
 
-    /// The coordinate that all points of such a guide share: 1 (y) if horizontal, 0 (x) if vertical.
+    /// Index of the coordinate that all points of a guide with this direction share: 1 (y) if horizontal, 0
+    /// (x) if vertical.
     pub fn axis(self) -> usize {
         match self {
             Self::Horizontal => 1,
@@ -74,7 +76,7 @@ impl GuideRun {
 }
 
 impl Pattern {
-    /// The guide with that id.
+    /// The guide with this id.
     pub fn guide(&self, id: GuideId) -> Option<&Arc<Guide>> {
         self.guides.iter().find(|guide| guide.id == id)
     }

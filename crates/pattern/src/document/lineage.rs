@@ -4,18 +4,19 @@ use super::{OperationKind, Panel, Pattern, Source};
 use crate::{Mark, Notch, NotchId, Operation, OperationId, PanelId, PartId, SheetId};
 use std::sync::Arc;
 
-/// The stages that lead to a panel, in the order they are made.
+/// The stages that lead to a panel, in order: the panel as drawn, then the panel after each of its
+/// operations, beginning with the panel that it was split from.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StageLineage {
-    /// Each stage as its panel, the operation after which it stands (none: as drawn), and the operation that
-    /// makes it.
+    /// Each stage: its panel, the last operation done (`None`: the panel as drawn), and the operation that
+    /// makes the stage.
     stages: Vec<(PanelId, Option<OperationId>, Option<OperationId>)>,
-    /// Index of the stage that is the panel before its own operations.
+    /// Index of the stage at which the panel itself starts, before any operation of its own.
     pub base: usize,
 }
 
 impl StageLineage {
-    /// Panel of a stage, and the operation after which it stands.
+    /// Panel of a stage, and the last operation done (`None`: the panel as drawn).
     pub fn stage(&self, step: usize) -> Option<(PanelId, Option<OperationId>)> {
         self.stages.get(step).map(|stage| (stage.0, stage.1))
     }
@@ -29,7 +30,7 @@ impl StageLineage {
 }
 
 impl Pattern {
-    /// The panel, the panel that it is a side of, and so on up to the panel that is drawn.
+    /// The panel, the panel that it is a side of after a split, and so on up to a panel that is drawn.
     pub fn lineage<'p>(&'p self, panel: &'p Panel) -> Vec<&'p Panel> {
         let mut found = vec![panel];
         let mut at = panel;
@@ -46,7 +47,7 @@ impl Pattern {
         found
     }
 
-    /// The sheet a panel is drawn on; for a side of a split panel the sheet of the panel that is split.
+    /// The sheet that a panel is drawn on; for a side of a split panel, the sheet of the panel that is split.
     pub fn sheet_of(&self, panel: &Panel) -> Option<SheetId> {
         self.lineage(panel).last().and_then(|root| root.sheet())
     }
@@ -58,8 +59,8 @@ impl Pattern {
             .find_map(|own| own.notch(id))
     }
 
-    /// The panel that an edge, line, notch or operation belongs to: the panel itself, or one that it is a
-    /// side of; none if the part is in none of them.
+    /// The panel that has the edge, line, notch or operation `part`: `panel` itself, or one that it is a side
+    /// of. `None`: none of these panels has the part.
     pub fn owner_of(&self, panel: PanelId, part: PartId) -> Option<&Panel> {
         let has = |own: &Panel| match part {
             PartId::Edge(id) => own.edge(id).is_some(),
@@ -81,7 +82,7 @@ impl Pattern {
         lineage.into_iter().find(|own| has(own))
     }
 
-    /// Whether a panel is split and its sides are cut in its place.
+    /// Whether a panel is split and its sides are cut instead of it.
     pub fn is_replaced(&self, panel: &Panel) -> bool {
         let is_side =
             |other: &Arc<Panel>| matches!(other.source, Source::Side { of, .. } if of == panel.id);
@@ -124,7 +125,7 @@ impl Pattern {
         found
     }
 
-    /// Index of the first stage of a panel that has every corner by which a mark is placed; none if one of
+    /// Index of the first stage of a panel that has all corners by which a mark is placed. `None`: one of
     /// these corners is made by an operation that does not lead to the panel.
     pub(crate) fn first_step(
         &self,
@@ -144,7 +145,7 @@ impl Pattern {
 }
 
 impl Panel {
-    /// Whether operations moved parts of the panel from where they were drawn.
+    /// Whether operations move parts of the panel away from their drawn places.
     pub fn is_altered(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);
         let moves = |kind: &OperationKind| match kind {
@@ -160,7 +161,7 @@ impl Panel {
         kinds.any(moves)
     }
 
-    /// Whether the panel is split into other panels, which are cut in its place.
+    /// Whether the panel is split into other panels, which are cut instead of it.
     pub fn is_split(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);
         kinds.any(|kind| matches!(kind, OperationKind::Split { .. }))

@@ -39,7 +39,7 @@ pub struct Marker {
     pub name: String,
     /// The fabric whose pieces are laid.
     pub fabric: FabricId,
-    /// Whether the pieces lie on this fabric even if the garment is cut from another.
+    /// Whether all pieces lie on this fabric, even if the garment is cut from another.
     pub keeps_fabric: bool,
     /// Settings of how the fabric is laid.
     pub cloth: ClothSettings,
@@ -49,7 +49,7 @@ pub struct Marker {
     pub matched: Vec<MatchedMarks>,
     /// Number of garments of each size.
     pub order: Vec<OrderedSize>,
-    /// Placements of pieces. Pieces of the order without a placement wait to be laid.
+    /// Placements of pieces on the fabric. Pieces of the order that have no placement are not laid yet.
     pub placements: Vec<PiecePlacement>,
 }
 
@@ -80,7 +80,7 @@ fields!(
     fault: |self| Self::fault(self)
 );
 
-/// A marker as a journal writes it.
+/// A marker as a journal stores it.
 #[derive(Serialize, Deserialize)]
 struct MarkerRecord {
     id: MarkerId,
@@ -130,14 +130,14 @@ impl From<MarkerRecord> for Marker {
 pub struct GarmentCloth {
     /// The fabric that replaces the fabric of every panel.
     pub fabric: Option<Arc<Fabric>>,
-    /// Width of the roll (m); none means the width of the fabric.
+    /// Width of the roll (m); `None`: the width of the fabric.
     pub width: Option<f64>,
 }
 
-/// The number of garments of one size, or for the wearer.
+/// The number of garments of one size, or of the wearer's own measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct OrderedSize {
-    /// The size; none stands for the wearer: the pattern as drafted for the garment.
+    /// The size; `None`: the wearer, with the pattern as drafted for the garment.
     pub size: Option<SizeId>,
     /// Number of garments, 1 to [`MAX_GARMENTS`].
     pub quantity: u32,
@@ -161,7 +161,7 @@ fields!(OrderedSize, |self, v| {
     v.value(key("quantity").may_lack(), quantity);
 });
 
-/// One piece that an order cuts: a copy of a panel for one garment.
+/// One piece that an order needs: a copy of a panel for one garment.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
@@ -170,7 +170,7 @@ pub struct OrderedPiece {
     pub panel: PanelId,
     /// Number of the copy, from 0; the odd copies of a mirrored pair are mirror images.
     pub copy: u32,
-    /// The size; none stands for the wearer.
+    /// The size; `None`: the wearer.
     pub size: Option<SizeId>,
     /// Number of the garment within its size, from 0.
     pub garment: u32,
@@ -192,26 +192,26 @@ fields!(OrderedPiece, |self, v| {
     v.value(key("garment").left_out_if(*garment == 0), garment);
 });
 
-/// Position of a piece on the fabric: its grain is turned to +x, then the piece is turned over if it is
-/// flipped (y changes sign), then turned, then moved.
+/// Position of a piece on the fabric. The piece is first turned so that its grain runs along +x, then
+/// mirrored (y changes sign) if `flipped`, then turned by `turn`, then moved to `at`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PiecePlacement {
     /// The piece.
     pub piece: OrderedPiece,
-    /// Position of the origin of its panel on the fabric (m).
+    /// Position of the origin of the piece's panel on the fabric (m).
     pub at: [f64; 2],
     /// Angle from the warp to the grain of the piece, counter-clockwise (rad).
     pub turn: f64,
     /// Whether the piece lies face down.
     pub flipped: bool,
-    /// Whether the piece stays in place while others are laid.
+    /// Whether the piece stays in place when other pieces are laid.
     pub locked: bool,
     /// Number of the roll that the piece lies on, from 0.
     #[serde(default, skip_serializing_if = "is_first")]
     pub roll: u16,
 }
 
-/// Whether this is the first roll, which is not written.
+/// Whether a roll is the first one, which is left out of files.
 fn is_first(roll: &u16) -> bool {
     *roll == 0
 }
@@ -236,7 +236,7 @@ fields!(PiecePlacement, |self, v| {
     v.value(key("roll").left_out_if(*roll == 0), roll);
 });
 
-/// A property that a marker keeps of its own although the garment is cut from something else.
+/// A property of a marker that differs because it does not follow the fabric that the garment is cut from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkerKeeps {
     /// The fabric.
@@ -256,7 +256,7 @@ pub enum MarkerKeeps {
 }
 
 impl Marker {
-    /// Placement of a piece, if it is laid.
+    /// Placement of a piece. `None`: the piece is not laid.
     pub fn placement(&self, piece: OrderedPiece) -> Option<&PiecePlacement> {
         self.placements.iter().find(|known| known.piece == piece)
     }
@@ -267,8 +267,8 @@ impl Marker {
         own.map(|ordered| ordered.quantity).sum()
     }
 
-    /// The rule for a copy of a panel: what the copy's own rule leaves open is taken from the rule for its
-    /// panel, then from the rule for all pieces.
+    /// The rule for a copy of a panel: a field that the copy's own rule leaves open is taken from the rule
+    /// for the panel, then from the rule for all pieces.
     pub fn rule_for(&self, panel: PanelId, copy: u32) -> PieceRule {
         let pieces = [
             RuledPieces::Copy(panel, copy),
@@ -286,7 +286,7 @@ impl Marker {
         })
     }
 
-    /// The first setting, rule, order or placement that no marker may have.
+    /// Fault of the first setting, rule, order or placement that is not allowed in a marker.
     pub fn fault(&self) -> Option<FieldFault> {
         self.cloth
             .fault()
@@ -370,18 +370,18 @@ impl Marker {
 }
 
 impl Pattern {
-    /// The marker with that id.
+    /// The marker with this id.
     pub fn marker(&self, id: MarkerId) -> Option<&Arc<Marker>> {
         self.markers.iter().find(|marker| marker.id == id)
     }
 
-    /// The marker with that name.
+    /// The marker with this name.
     pub fn marker_named(&self, name: &str) -> Option<&Arc<Marker>> {
         self.markers.iter().find(|marker| marker.name == name)
     }
 
-    /// The fabric that a marker's pieces lie on, with its width there: the fabric that the garment is cut
-    /// from, unless the marker keeps its own. None if the marker's own fabric is gone.
+    /// The fabric that a marker's pieces lie on, with the width used: the fabric that the garment is cut
+    /// from, unless the marker keeps its own. `None`: the marker's own fabric no longer exists.
     pub fn marker_fabric(&self, marker: &Marker, garment: &GarmentCloth) -> Option<Fabric> {
         let own = self.fabric(marker.fabric)?;
         let (fabric, roll) = match (marker.keeps_fabric, &garment.fabric) {
@@ -395,7 +395,7 @@ impl Pattern {
         })
     }
 
-    /// The property of a marker, if any, that differs from the fabric that the garment is cut from.
+    /// The property in which a marker differs from the fabric that the garment is cut from, if any.
     pub fn marker_keeps(&self, marker: &Marker, garment: &GarmentCloth) -> Option<MarkerKeeps> {
         let own = self.fabric(marker.fabric)?;
         let follows = Marker {
@@ -421,8 +421,8 @@ impl Pattern {
         })
     }
 
-    /// Every piece that a marker's order cuts from its fabric, by size, garment, panel and copy. On fabric
-    /// that lies double some of them are cut together with another piece and are not laid themselves.
+    /// All pieces that a marker's order cuts from its fabric, by size, garment, panel and copy. On folded or
+    /// tubular fabric some of them are cut in the layer below another piece and are not laid themselves.
     pub fn ordered_pieces<'a>(
         &'a self,
         marker: &'a Marker,
@@ -445,8 +445,8 @@ impl Pattern {
         })
     }
 
-    /// Description of a piece of an order: its panel, and as much of copy, size and garment as tells it from
-    /// the others.
+    /// Description of a piece of an order: its panel, and copy, size and garment if needed to tell it from
+    /// other pieces.
     pub fn piece_words(&self, piece: OrderedPiece) -> String {
         let panel = self.panel(piece.panel);
         let name = panel.map_or_else(|| piece.panel.to_string(), |p| format!("{:?}", p.name));
@@ -472,8 +472,8 @@ impl Pattern {
     }
 }
 
-/// The copies of a panel that are cut from a marker's fabric. Copies that are cut from it in addition, such
-/// as interfacing, are numbered on from the copies of the panel itself.
+/// Numbers of the copies of a panel that are cut from a marker's fabric. Copies that are cut in addition,
+/// such as interfacing, have the numbers after those of the panel's own copies.
 fn copies_on<'a>(marker: &'a Marker, panel: &'a Panel) -> impl Iterator<Item = u32> + 'a {
     let own = move |copy: &u32| {
         let rule = marker.rule_for(panel.id, *copy);

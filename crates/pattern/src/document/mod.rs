@@ -71,11 +71,11 @@ pub const NAME_LENGTH: usize = 80;
 pub struct Pattern {
     /// Name to show.
     pub name: String,
-    /// Unit in which lengths are shown and written; values in memory are metres all the same.
+    /// Unit in which lengths are shown and written; in memory all lengths are in metres.
     pub unit: DisplayUnit,
     /// Named tables of measurements, in the order they are offered.
     pub sizes: Vec<Arc<Size>>,
-    /// The size used when none is asked for; without it the first size is used.
+    /// The size used when no other is asked for; `None`: the first size.
     pub base_size: Option<SizeId>,
     /// Named numbers for formulas.
     pub variables: Vec<Arc<Variable>>,
@@ -90,7 +90,7 @@ pub struct Pattern {
     /// Markers: pieces laid on fabric to be cut together.
     #[serde(default)]
     pub markers: Vec<Arc<Marker>>,
-    /// Lines across the table to draw against.
+    /// Guides: lines across the table to draw against.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub guides: Vec<Arc<Guide>>,
     /// Source of the ids of new parts.
@@ -113,7 +113,7 @@ fields!(Pattern, |self, v| {
         ids: Ids { next: next_id },
     } = self;
     v.value(key("name"), name);
-    // The unit precedes the first length, which is read in it.
+    // The unit is read before the first length, because lengths are given in this unit.
     v.value(key("unit").may_lack(), unit);
     v.optional("base_size", base_size);
     if let Some(base_size) = base_size {
@@ -185,8 +185,8 @@ fields!(Size, |self, v| {
     v.measurements("measurements", measurements);
 });
 
-/// A named number that formulas may use. A bare value is a plain number; a length is a formula
-/// with a unit.
+/// A named number that formulas may use. A value without a unit is a plain number; a length is written as a
+/// formula with a unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
     /// Identifier of the variable.
@@ -227,7 +227,8 @@ impl Pattern {
         pattern
     }
 
-    /// Whether another pattern has the same content, whatever ids each would give next.
+    /// Whether another pattern has the same content; the ids that each would give to its next part may
+    /// differ.
     pub fn says_the_same(&self, other: &Self) -> bool {
         let counted_alike = Self {
             ids: other.ids,
@@ -236,59 +237,59 @@ impl Pattern {
         counted_alike == *other
     }
 
-    /// The sheet with that id.
+    /// The sheet with this id.
     pub fn sheet(&self, id: SheetId) -> Option<&Arc<Sheet>> {
         self.sheets.iter().find(|sheet| sheet.id == id)
     }
 
-    /// A point, and the sheet it is on.
+    /// A point, and the sheet that it is on.
     pub fn point(&self, id: PointId) -> Option<(&Arc<Sheet>, &Arc<Point>)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| Some((sheet, sheet.point(id)?)))
     }
 
-    /// A curve, and the sheet it is on.
+    /// A curve, and the sheet that it is on.
     pub fn curve(&self, id: CurveId) -> Option<(&Arc<Sheet>, &Arc<Curve>)> {
         let mut sheets = self.sheets.iter();
         sheets.find_map(|sheet| Some((sheet, sheet.curve(id)?)))
     }
 
-    /// The panel with that id.
+    /// The panel with this id.
     pub fn panel(&self, id: PanelId) -> Option<&Arc<Panel>> {
         self.panels.iter().find(|panel| panel.id == id)
     }
 
-    /// The panel with that name.
+    /// The panel with this name.
     pub fn panel_named(&self, name: &str) -> Option<&Arc<Panel>> {
         self.panels.iter().find(|panel| panel.name == name)
     }
 
-    /// The seam with that id.
+    /// The seam with this id.
     pub fn seam(&self, id: SeamId) -> Option<&Arc<Seam>> {
         self.seams.iter().find(|seam| seam.id == id)
     }
 
-    /// The fabric with that id.
+    /// The fabric with this id.
     pub fn fabric(&self, id: FabricId) -> Option<&Arc<Fabric>> {
         self.fabrics.iter().find(|fabric| fabric.id == id)
     }
 
-    /// The variable with that name.
+    /// The variable with this name.
     pub fn variable_named(&self, name: &str) -> Option<&Arc<Variable>> {
         self.variables.iter().find(|variable| variable.name == name)
     }
 
-    /// The size with that name.
+    /// The size with this name.
     pub fn size_named(&self, name: &str) -> Option<&Arc<Size>> {
         self.sizes.iter().find(|size| size.name == name)
     }
 
-    /// The measurements of a named size.
+    /// Measurements of the size with this name.
     pub fn size(&self, name: &str) -> Option<&Measurements> {
         self.size_named(name).map(|size| &size.measurements)
     }
 
-    /// The base size: the chosen one, else the first.
+    /// The base size: the one that is chosen, else the first.
     pub fn base(&self) -> Option<&Arc<Size>> {
         let chosen = self
             .sizes
@@ -303,8 +304,8 @@ impl Pattern {
     }
 }
 
-/// Whether a part may have that name: 1 to 80 characters, no control characters, no single
-/// quotes (formulas use them), no space at either end.
+/// Whether a part may have this name: 1 to 80 characters, no control characters, no single quotes (formulas
+/// use them), no space at either end.
 pub fn is_part_name(name: &str) -> bool {
     !name.is_empty()
         && name.trim() == name

@@ -31,7 +31,7 @@ pub struct Operation {
     pub name: String,
     /// Kind of operation, with its settings.
     pub kind: OperationKind,
-    /// Whether a kink is intended in the edge that runs on across the dart, pleat or split.
+    /// Whether a kink is intended in the edge that continues across the dart, pleat or split.
     #[serde(default)]
     pub meant: bool,
 }
@@ -55,7 +55,7 @@ fields!(Operation, |self, v| {
 )]
 #[strum(serialize_all = "snake_case")]
 pub enum OperationKind {
-    /// A dart taken out of a line. The drawn line includes the mouth of the dart.
+    /// A dart that opens in a line of the panel. The line as drawn includes the mouth of the dart.
     Dart {
         /// The line that the dart opens in.
         line: LineName,
@@ -67,93 +67,94 @@ pub enum OperationKind {
         apex: Apex,
         /// The leg towards which the dart is pressed once it is sewn.
         pressed: Pressed,
-        /// Whether the dart is trued: the edge is redrawn so that it runs on smoothly across the mouth of the
-        /// closed dart, and the legs become equally long.
+        /// Whether the dart is trued: the edge is redrawn so that it is smooth across the mouth of the closed
+        /// dart, and the legs become equally long.
         #[serde(default)]
         trued: bool,
-        /// Whether a trued dart shortens the finished edge by its intake alone: the mouth is made narrower by
-        /// the length that truing takes in addition.
+        /// Whether truing keeps the length: the finished edge is then shorter by the intake alone, as the
+        /// mouth is made narrower by the length that truing takes in addition.
         #[serde(default)]
         keeps_length: bool,
     },
-    /// A dart inside the panel, pointed at both ends.
+    /// A dart inside the panel, pointed at both ends (fish-eye dart).
     Diamond {
         /// Both ends of the dart.
         ends: [PointId; 2],
-        /// Plain share of the way between the ends at which the dart is widest.
+        /// Place at which the dart is widest, as a share of the way between its ends (1).
         widest: Number,
-        /// Width of the dart there (m).
+        /// Width of the dart at its widest place (m).
         intake: Number,
     },
-    /// The mirror half of the panel: a straight stretch lies on the fold of the cloth, and the piece is the
-    /// panel together with its mirror image, unfolded.
+    /// The panel is half of its piece: a straight stretch of a line lies on the fold of the cloth, and the
+    /// piece is the panel together with its mirror image.
     Fold {
-        /// The line with the stretch.
+        /// The line that the stretch is on.
         line: LineName,
         /// Both ends of the stretch, in the order of the line.
         ends: [Mark; 2],
     },
-    /// A dart made smaller and a second dart that takes in the rest at another place: the panel is cut from
-    /// the new mouth to the pivot point of the dart, and one part is turned about that point.
+    /// Part of a dart's intake is moved to a second dart at another place, by the pivot method: the panel is
+    /// cut from the new mouth to the dart's pivot point, and one part of the panel is turned about that
+    /// point.
     Pivot {
-        /// The dart that is made smaller: a dart or a pivot before this operation.
+        /// The operation that made the dart to be made smaller: an earlier dart or pivot.
         dart: OperationId,
         /// The line that the new mouth opens in.
         line: LineName,
         /// Position of the new mouth.
         mouth: Mark,
-        /// Plain share of the dart's angle that is moved to the new dart, from 0 to 1.
+        /// Share of the dart's angle that is moved to the new dart, from 0 to 1.
         share: Number,
-        /// Distance from the pivot point at which both darts then end (m).
+        /// Distance from the pivot point at which both darts end after the pivot (m).
         back: Number,
         /// The part of the panel that is turned.
         turned: Turned,
         /// The leg towards which the new dart is pressed.
         pressed: Pressed,
     },
-    /// The panel cut along straight cuts and spread: the openings are filled with cloth.
+    /// The panel is cut along straight cuts and spread; the openings are filled with cloth.
     Spread {
-        /// The line that is cut.
+        /// The line that the cuts cross.
         line: LineName,
-        /// A place on the line that stays fixed, with the part of the panel that is connected to it.
+        /// A place on the line that stays fixed, with the part of the panel connected to that place.
         held: Mark,
         /// The cuts along which the panel is opened.
         cuts: Vec<SpreadCut>,
-        /// Shape of the line across an opening.
+        /// Shape of the line across each opening.
         bridge: Bridge,
     },
-    /// The panel cut in two along a curve: the panel itself is then not cut from cloth, but the two panels
-    /// that are its sides.
+    /// The panel is cut in two along a curve. Two other panels, its sides, are then cut from cloth instead of
+    /// the panel.
     Split {
-        /// The line that the cut starts and ends on.
+        /// The line on which the cut starts and ends.
         line: LineName,
-        /// The curve of the cut, from the line to the line.
+        /// The curve of the cut, which starts and ends on the line.
         curve: CurveId,
     },
-    /// Lines of the panel that are drawn on a sheet which lies on the stage before this operation: holes and
-    /// internal lines that name this operation.
+    /// Holes and internal lines are inserted into the panel. They are drawn on a sheet that lies on the panel
+    /// as it is before this operation, and each names this operation.
     Insert {
         /// The sheet with the lines.
         sheet: SheetId,
     },
-    /// Pleats: the panel is cut along straight lines, and cloth is inserted there that folds under it.
+    /// Pleats: the panel is cut along straight lines, and cloth is inserted there that folds under the panel.
     Pleat {
-        /// The line that is cut.
+        /// The line that the cuts cross.
         line: LineName,
-        /// A place on the line that stays fixed, with the part of the panel that is connected to it.
+        /// A place on the line that stays fixed, with the part of the panel connected to that place.
         held: Mark,
         /// The lines along which the panel is pleated.
         pleats: Vec<PleatLine>,
         /// Depth of a fold under the cloth (m): a knife pleat takes twice that length of cloth, other pleats
-        /// four times.
+        /// take four times that length.
         depth: Number,
         /// Kind of pleat.
         kind: PleatKind,
-        /// The side of its line to which a knife pleat is pressed: its underlay lies under that side.
+        /// For a knife pleat, the side of its pleat line to which it is pressed: the underlay lies under that
+        /// side.
         pressed: Side,
-        /// Whether the pleat is trued: the underlay is cut along the edge that it lies on when folded, else
-        /// straight across.
-        /// folded, else straight across.
+        /// Whether the pleats are trued: the end of each underlay is cut along the edge that it lies under
+        /// when folded, else straight across.
         #[serde(default = "is_trued")]
         trued: bool,
     },
@@ -235,7 +236,7 @@ fields!(
     },
 );
 
-/// Pleats of journals that lack this field are trued.
+/// Value for pleats in journals that lack the field: they are trued.
 fn is_trued() -> bool {
     true
 }
@@ -257,17 +258,18 @@ fn is_trued() -> bool {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Turned {
-    /// The part from the dart along the outline as drawn to the new mouth.
+    /// The part along the outline, as drawn, from the dart to the new mouth.
     #[default]
     FromDart,
-    /// The part from the new mouth along the outline to the dart.
+    /// The part along the outline, as drawn, from the new mouth to the dart.
     ToDart,
 }
 
 /// A cut along which a panel is spread.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpreadCut {
-    /// Number of the cut, unique in the operation; edges and corners that it makes are named by it.
+    /// Number of the cut, unique in the operation; names of the edges and corners that the cut makes contain
+    /// it.
     pub number: u16,
     /// Start and end of the cut, both on the line.
     pub ends: [Mark; 2],
@@ -293,7 +295,8 @@ fields!(SpreadCut, |self, v| {
 /// A line along which a panel is pleated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PleatLine {
-    /// Number of the pleat, unique in the operation; edges and corners that it makes are named by it.
+    /// Number of the pleat, unique in the operation; names of the edges and corners that the pleat makes
+    /// contain it.
     pub number: u16,
     /// Start and end of the pleat, both on the line.
     pub ends: [Mark; 2],
@@ -310,8 +313,8 @@ fields!(PleatLine, |self, v| {
 });
 
 impl PleatLine {
-    /// The largest number a pleat may have: the corners of its underlay are numbered from ten times
-    /// this number.
+    /// The largest number that a pleat may have: the corners of its underlay are numbered from ten times this
+    /// number.
     pub const LARGEST: u16 = u16::MAX / 10 - 1;
 }
 
@@ -342,12 +345,12 @@ pub enum PleatKind {
 }
 
 impl SpreadCut {
-    /// The largest number a cut may have: the corners at its openings are numbered from four times
-    /// this number.
+    /// The largest number that a cut may have: the corners at its openings are numbered from four times this
+    /// number.
     pub const LARGEST: u16 = u16::MAX / 4;
 }
 
-/// Shape of an outline across an opening.
+/// Shape of a line across an opening of a spread panel.
 #[derive(
     Clone,
     Copy,
@@ -371,7 +374,7 @@ pub enum Bridge {
     Smooth,
 }
 
-/// A side of a split panel.
+/// A side of a curve or line that divides a panel.
 #[derive(
     Clone,
     Copy,
@@ -388,10 +391,10 @@ pub enum Bridge {
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
 pub enum Side {
-    /// Left of the curve.
+    /// Left of the curve, seen along it.
     #[default]
     Left,
-    /// Right of the curve.
+    /// Right of the curve, seen along it.
     Right,
 }
 
@@ -420,7 +423,7 @@ pub enum Pressed {
 }
 
 impl Pressed {
-    /// Number of the leg among the legs that the dart makes.
+    /// Number of the leg among the legs of the dart.
     pub fn leg(self) -> u16 {
         match self {
             Self::Before => 0,
@@ -429,12 +432,12 @@ impl Pressed {
     }
 }
 
-/// The end of a dart inside the panel.
+/// The end of a dart inside the panel (its point).
 #[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum Apex {
-    /// At a point of the panel's sheet.
+    /// The apex is a point drawn on the panel's sheet.
     Point(PointId),
-    /// At this distance from the middle of the mouth, square to it (m).
+    /// The apex lies at this distance from the middle of the mouth, square to the mouth (m).
     Depth(Number),
 }
 
@@ -465,7 +468,7 @@ impl Choice for Side {}
 impl Choice for Pressed {}
 
 impl OperationKind {
-    /// The line that the operation cuts or folds; none for an operation inside the panel.
+    /// The line that the operation cuts or folds. `None`: the operation is inside the panel.
     pub fn line(&self) -> Option<LineName> {
         match self {
             Self::Dart { line, .. }
@@ -478,7 +481,7 @@ impl OperationKind {
         }
     }
 
-    /// Both ends of the stretch that a fold unfolds.
+    /// Both ends of the stretch that a fold lays on the fold of the cloth. `None`: the operation is no fold.
     pub fn fold_ends(&self) -> Option<&[Mark; 2]> {
         let Self::Fold { ends, .. } = self else {
             return None;
@@ -486,7 +489,7 @@ impl OperationKind {
         Some(ends)
     }
 
-    /// The sheet whose lines the operation inserts.
+    /// The sheet whose lines the operation inserts. `None`: the operation inserts no lines.
     pub fn sheet(&self) -> Option<SheetId> {
         let Self::Insert { sheet } = self else {
             return None;
@@ -496,12 +499,12 @@ impl OperationKind {
 }
 
 impl OperationKind {
-    /// The field of files that holds this kind of operation.
+    /// Name of the file field that holds this kind of operation.
     fn key(&self) -> &'static str {
         self.into()
     }
 
-    /// Whether the operation may redraw an edge across trued darts: a trued dart, or the pivot of a dart.
+    /// Whether the operation may redraw an edge to true darts: it is a trued dart, or a pivot.
     pub fn may_true(&self) -> bool {
         matches!(self, Self::Dart { trued: true, .. } | Self::Pivot { .. })
     }

@@ -28,7 +28,7 @@ pub struct Panel {
     pub id: PanelId,
     /// Name to show and for formulas, unique in the pattern.
     pub name: String,
-    /// Origin of the panel's shape.
+    /// Source of the panel's shape: a sheet, or a side of another panel.
     pub source: Source,
     /// Outline, holes and internal lines. Seen from the right side of the cloth the outline runs
     /// counter-clockwise, holes clockwise.
@@ -39,7 +39,7 @@ pub struct Panel {
     pub operations: Vec<Arc<Operation>>,
     /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: Number,
-    /// Seam allowance of edges that have none of their own (m).
+    /// Seam allowance of edges that do not have their own (m).
     pub allowance: Number,
     /// Number of pieces cut, and whether in mirrored pairs.
     pub cut: Cut,
@@ -47,7 +47,7 @@ pub struct Panel {
     pub fabric: FabricId,
     /// Place of the panel on the body.
     pub worn: WornRule,
-    /// Displacement on the table from the place where its sheet has the panel (m), if it was moved.
+    /// Displacement of the panel on the table from its place on the sheet (m), if the panel was moved.
     pub on_table: Option<[f64; 2]>,
 }
 
@@ -103,12 +103,12 @@ fields!(Panel, |self, v| {
     v.each(group("operations"), operations);
 });
 
-/// Origin of the shape of a panel.
+/// Source of the shape of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumIter, Serialize, Deserialize)]
 pub enum Source {
     /// The lines of the panel follow curves of a sheet.
     Traced(SheetId),
-    /// The panel is one side of another panel, which is split, and follows it.
+    /// The panel is one side of another panel that is split, and changes with it.
     Side {
         /// The panel that is split.
         of: PanelId,
@@ -159,7 +159,7 @@ pub struct Line {
     pub name: String,
     /// Kind of line.
     pub kind: LineKind,
-    /// The operation that inserts the line; none for a line of the panel as drawn.
+    /// The operation that inserts the line; `None`: the line belongs to the panel as drawn.
     pub by: Option<OperationId>,
     /// Edges of the line, in order.
     pub edges: Vec<Edge>,
@@ -209,7 +209,7 @@ pub enum LineKind {
     Internal,
 }
 
-/// A stretch of a curve, from a point on it to another.
+/// A stretch of a curve between two of its points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Edge {
     /// Identifier of the edge.
@@ -220,7 +220,7 @@ pub struct Edge {
     pub curve: CurveId,
     /// Start and end of the edge: points on the curve. The edge may run against the curve.
     pub ends: [PointId; 2],
-    /// Seam allowance of the edge (m); none means the allowance of the panel.
+    /// Seam allowance of the edge (m); `None`: the allowance of the panel.
     pub allowance: Option<Number>,
     /// The corner at the start of the edge.
     pub corner: EdgeCorner,
@@ -251,7 +251,7 @@ pub struct Notch {
     pub id: NotchId,
     /// Name to show.
     pub name: String,
-    /// The line it is on.
+    /// The line that the notch is on.
     pub line: LineId,
     /// Position of the notch on the line.
     pub at: Mark,
@@ -294,13 +294,13 @@ pub enum NotchKind {
     /// A short cut square to the edge.
     #[default]
     Slit,
-    /// A V.
+    /// A cut in the shape of a V.
     V,
-    /// A rectangle.
+    /// A cut in the shape of a rectangle.
     Castle,
-    /// A T.
+    /// A cut in the shape of a T.
     T,
-    /// A check mark.
+    /// A cut in the shape of a check mark.
     Check,
 }
 
@@ -322,7 +322,7 @@ impl Default for Cut {
     }
 }
 
-/// One value for each form in which it is written: a number, `"pair"`, both fields.
+/// One example for each form in which files write it: a number, `"pair"`, both fields.
 impl IntoEnumIterator for Cut {
     type Iterator = std::array::IntoIter<Self, 3>;
 
@@ -368,14 +368,16 @@ pub enum WornRule {
         part: BodyPart,
         /// The side of the body part.
         facing: Facing,
-        /// Height above the floor, or distance along an arm from the shoulder (m).
+        /// Height above the floor, or distance along an arm from the shoulder (m). `None`: the program
+        /// decides.
         level: Option<Number>,
     },
-    /// Placed in space: world from panel. Mirrored copies go to the mirror place at -x.
+    /// Placed in space by a transformation from the panel to the world. Mirrored copies are placed at the
+    /// mirror image (x changes sign).
     Placed {
         /// Position of the panel's origin in space (m).
         translation: [f64; 3],
-        /// Unit quaternion x, y, z, w.
+        /// Rotation: unit quaternion x, y, z, w.
         rotation: [f64; 4],
     },
 }
@@ -413,12 +415,12 @@ fields!(
 );
 
 impl Panel {
-    /// The notch with that id.
+    /// The notch with this id.
     pub fn notch(&self, id: NotchId) -> Option<&Notch> {
         self.notches.iter().find(|notch| notch.id == id)
     }
 
-    /// The number of an operation, counted from 1 in the order in which the operations are done.
+    /// Number of an operation, counted from 1 in the order in which operations are done.
     pub fn step_of(&self, operation: OperationId) -> Option<usize> {
         let mut operations = self.operations.iter();
         operations.position(|o| o.id == operation).map(|k| k + 1)
@@ -442,7 +444,7 @@ impl Panel {
         }
     }
 
-    /// The sheet that the panel is traced from; none if it is a side of another panel.
+    /// The sheet that the panel is traced from. `None`: it is a side of another panel.
     pub fn sheet(&self) -> Option<SheetId> {
         match self.source {
             Source::Traced(sheet) => Some(sheet),
@@ -450,33 +452,33 @@ impl Panel {
         }
     }
 
-    /// The outline, if there is one.
+    /// The outline of the panel, if it has one.
     pub fn outline(&self) -> Option<&Line> {
         let mut lines = self.lines.iter();
         lines.find(|line| line.kind == LineKind::Outline)
     }
 
-    /// Every edge, line by line.
+    /// All edges, line by line.
     pub fn edges(&self) -> impl Iterator<Item = &Edge> {
         self.lines.iter().flat_map(|line| &line.edges)
     }
 
-    /// The edge with that id.
+    /// The edge with this id.
     pub fn edge(&self, id: EdgeId) -> Option<&Edge> {
         self.edges().find(|edge| edge.id == id)
     }
 
-    /// The edge with that name.
+    /// The edge with this name.
     pub fn edge_named(&self, name: &str) -> Option<&Edge> {
         self.edges().find(|edge| edge.name == name)
     }
 
-    /// The line with that id.
+    /// The line with this id.
     pub fn line(&self, id: LineId) -> Option<&Line> {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// The line an edge is on.
+    /// The line that an edge is on.
     pub fn line_of(&self, edge: EdgeId) -> Option<&Line> {
         let mut lines = self.lines.iter();
         lines.find(|line| line.edges.iter().any(|known| known.id == edge))
@@ -489,8 +491,8 @@ impl Line {
         self.kind != LineKind::Internal
     }
 
-    /// Edges of the line from one corner to a later one, all edges if both are the same corner of a closed
-    /// line; none if either is not a corner of the line in this order.
+    /// Edges of the line from the corner `from` to the later corner `to`; all edges if both are the same
+    /// corner of a closed line. `None`: these are not corners of the line in this order.
     pub fn stretch(&self, [from, to]: [PointId; 2]) -> Option<Vec<&Edge>> {
         let first = self.edges.iter().position(|edge| edge.ends[0] == from)?;
         let count = self.edges.len();

@@ -8,8 +8,8 @@ use strum::EnumIter;
 /// Declares [`LayingRule`], and all that treats its fields alike.
 macro_rules! laying_rule {
     ($($(#[$about:meta])* $field:ident: $type:ty,)*) => {
-        /// Rule for laying a piece, in addition to the settings of its fabric. Fields that are not given are taken
-        /// from a rule for more pieces, else from the default.
+        /// Rule for laying a piece, in addition to the settings of its fabric. A field that is not given is
+        /// taken from a rule that covers more pieces, else from the default.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         #[serde(default)]
         pub struct LayingRule {
@@ -144,11 +144,11 @@ impl LayingRule {
     }
 }
 
-/// The pieces that a rule is for.
+/// The pieces that a rule applies to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumIter, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RuledPieces {
-    /// One copy of a panel, from 0.
+    /// One copy of a panel; copies are numbered from 0.
     Copy(PanelId, u32),
     /// All copies of a panel.
     Panel(PanelId),
@@ -187,7 +187,7 @@ pub struct PieceRule {
     /// The fabric that the pieces are cut from instead of the fabric of their panel.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fabric: Option<FabricId>,
-    /// Further fabrics that the pieces are cut from in addition.
+    /// Further fabrics that the pieces are cut from too, such as a lining.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub also: Option<Vec<FurtherFabric>>,
 }
@@ -208,12 +208,12 @@ fields!(PieceRule, |self, v| {
     given_list!(v, also);
 });
 
-/// A further fabric that pieces are cut from in addition.
+/// A further fabric that pieces are cut from too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FurtherFabric {
     /// The fabric.
     pub fabric: FabricId,
-    /// Number of copies cut from it for each garment's piece.
+    /// Number of copies cut from this fabric for each piece of a garment.
     pub quantity: u32,
 }
 
@@ -223,7 +223,7 @@ fields!(FurtherFabric, |self, v| {
     v.value(key("quantity"), quantity);
 });
 
-/// A notch that lies on the same place of the print as other notches.
+/// A notch that must lie on the same place of the print as other notches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MarkRef {
     /// The panel.
@@ -238,7 +238,7 @@ fields!(MarkRef, |self, v| {
     v.id("notch", notch);
 });
 
-/// Marks that lie on the same place of the print in every garment.
+/// Marks that must lie on the same place of the print in every garment.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct MatchedMarks(pub Vec<MarkRef>);

@@ -14,7 +14,7 @@ use crate::fields::{ValueField, group, key, length};
 use crate::{LineName, Mark, Number, PanelId, SeamId, fields};
 use serde::{Deserialize, Serialize};
 
-/// Two chains of spans that are sewn together, start to start.
+/// Two chains of spans that are sewn together, beginning at the start of each chain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seam {
     /// Identifier of the seam.
@@ -23,9 +23,9 @@ pub struct Seam {
     pub name: String,
     /// Spans of both sides, each in walking order.
     pub sides: [Vec<Span>; 2],
-    /// Length by which one side may exceed the other (m).
+    /// Length by which one side may be longer than the other (m).
     pub ease: Number,
-    /// Whether the longer side is gathered to fit the shorter, however long it is.
+    /// Whether the longer side is gathered to fit the shorter side, whatever its length.
     pub gathered: bool,
     /// Whether the right sides lie together during sewing: the usual seam.
     pub right_sides_together: bool,
@@ -65,7 +65,7 @@ fields!(Seam, |self, v| {
 });
 
 impl Seam {
-    /// A usual seam without ease.
+    /// A seam without ease, right sides together.
     pub fn new(id: SeamId, name: impl Into<String>, sides: [Vec<Span>; 2]) -> Self {
         Self {
             id,
@@ -91,7 +91,8 @@ pub struct Span {
     pub panel: PanelId,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Half of a folded panel: 0 as drawn; each fold has one bit, set for the half beyond that fold.
+    /// Half of a folded panel: 0 is the half as drawn; each fold has one bit, which is set for the half
+    /// beyond that fold.
     pub half: u8,
     /// The line that the stretch is on.
     pub line: LineName,
@@ -124,7 +125,7 @@ fields!(Span, |self, v| {
 });
 
 impl Span {
-    /// The same span walked the other way.
+    /// This span walked the other way.
     pub fn reversed(self) -> Self {
         Self {
             from: self.to,

@@ -23,8 +23,8 @@ pub struct Sheet {
     pub id: SheetId,
     /// Name to show and for formulas.
     pub name: String,
-    /// The panel stage that the sheet lies on: the panel after that operation, or as drawn. None for a
-    /// free sheet.
+    /// The stage of a panel that the sheet lies on: the panel after the given operation, or as drawn if the
+    /// operation is `None`. `None` as a whole: the sheet is free.
     pub on: Option<(PanelId, Option<OperationId>)>,
     /// Position of the sheet's origin on the table (m).
     pub on_table: [f64; 2],
@@ -67,22 +67,22 @@ fields!(Sheet, |self, v| {
 });
 
 impl Sheet {
-    /// The point with that id.
+    /// The point with this id.
     pub fn point(&self, id: PointId) -> Option<&Arc<Point>> {
         self.points.iter().find(|point| point.id == id)
     }
 
-    /// The point with that name.
+    /// The point with this name.
     pub fn point_named(&self, name: &str) -> Option<&Arc<Point>> {
         self.points.iter().find(|point| point.name == name)
     }
 
-    /// The curve with that id.
+    /// The curve with this id.
     pub fn curve(&self, id: CurveId) -> Option<&Arc<Curve>> {
         self.curves.iter().find(|curve| curve.id == id)
     }
 
-    /// The curve with that name.
+    /// The curve with this name.
     pub fn curve_named(&self, name: &str) -> Option<&Arc<Curve>> {
         self.curves.iter().find(|curve| curve.name == name)
     }
@@ -109,21 +109,21 @@ fields!(Point, |self, v| {
 /// Rule for the position of a point: its coordinates, or its construction from other parts of its sheet.
 #[derive(Clone, Debug, PartialEq, EnumIter, Serialize, Deserialize)]
 pub enum PointRule {
-    /// At coordinates of the sheet.
+    /// A point at given coordinates of the sheet.
     At {
         /// Distance to the right of the origin (m).
         x: Number,
         /// Distance above the origin (m).
         y: Number,
     },
-    /// The crossing of two curves.
+    /// A point where two curves cross.
     CurveCrossing {
         /// The curves.
         curves: [CurveId; 2],
         /// Number of the crossing, from 0 along the first curve.
         index: u16,
     },
-    /// The crossing of a curve with the line through two points.
+    /// A point where a curve crosses the line through two points.
     LineCrossing {
         /// The line.
         line: [PointId; 2],
@@ -132,18 +132,18 @@ pub enum PointRule {
         /// Number of the crossing, from 0 along the curve.
         index: u16,
     },
-    /// On a curve, at a distance from its start, or from its end if negative.
+    /// A point on a curve at a distance from its start; from its end if the distance is negative.
     AlongCurve {
         /// The curve.
         curve: CurveId,
-        /// Arc length from that end (m).
+        /// Arc length from the start or end of the curve (m).
         distance: Number,
     },
-    /// On a curve, at a share of its arc length.
+    /// A point on a curve at a share of its arc length.
     OnCurve {
         /// The curve.
         curve: CurveId,
-        /// Plain share of the curve's arc length.
+        /// Share of the curve's arc length (1).
         share: Number,
     },
     /// The point in which the lines through two pairs of points meet.
@@ -153,28 +153,28 @@ pub enum PointRule {
         /// The second line.
         second: [PointId; 2],
     },
-    /// The foot of the perpendicular from a point on the line through two others.
+    /// The foot of the perpendicular from a point to the line through two other points.
     Foot {
-        /// The point whose foot is taken.
+        /// The point that the perpendicular starts from.
         base: PointId,
         /// The line.
         line: [PointId; 2],
     },
-    /// The mirror image of a point in the line through two others.
+    /// The mirror image of a point in the line through two other points.
     Mirrored {
         /// The point that is mirrored.
         base: PointId,
-        /// The mirror.
+        /// The mirror line.
         line: [PointId; 2],
     },
-    /// A place on a line of the panel that the sheet lies on, at that stage.
+    /// A place on a line of the panel stage that the sheet lies on.
     Mark {
-        /// The line.
+        /// The line of the panel.
         line: LineName,
         /// Position on the line.
         at: Mark,
     },
-    /// Beside another point.
+    /// A point at a displacement from another point.
     Offset {
         /// The other point.
         base: PointId,
@@ -183,7 +183,7 @@ pub enum PointRule {
         /// Distance above the other point (m).
         y: Number,
     },
-    /// At a distance from another point.
+    /// A point in a direction and at a distance from another point.
     Polar {
         /// The other point.
         base: PointId,
@@ -192,7 +192,7 @@ pub enum PointRule {
         /// Distance from the other point (m).
         distance: Number,
     },
-    /// On the line through two points, at a distance from the first.
+    /// A point on the line through two points, at a distance from the first.
     Toward {
         /// Start of the line.
         base: PointId,
@@ -201,15 +201,15 @@ pub enum PointRule {
         /// Distance from the start (m).
         distance: Number,
     },
-    /// In the frame of two points: `base + along (tip - base) + aside (tip - base turned left)`.
+    /// A point in the frame of two points: `base + along (tip - base) + aside (tip - base turned left)`.
     Between {
         /// Origin of the frame.
         base: PointId,
-        /// End of its unit axis.
+        /// Point that is one unit from the origin, along the first axis.
         tip: PointId,
-        /// Plain share of the way from base to tip.
+        /// Share of the way from `base` to `tip` (1).
         along: Number,
-        /// Plain share of the same length, to the left of the way.
+        /// Displacement to the left of that way, as a share of its length (1).
         aside: Number,
     },
 }
@@ -328,7 +328,7 @@ fields!(
     },
 );
 
-/// Field for the number of one of several crossings.
+/// File field for the number that picks one of several crossings.
 const INDEX: ValueField = key("index")
     .may_lack()
     .beyond("there are not that many crossings", "write 0 or more");
@@ -373,12 +373,13 @@ fields!(Curve, |self, v| {
 /// Rule for the shape of a curve between its ends.
 #[derive(Clone, Debug, PartialEq, Default, EnumIter, Serialize, Deserialize)]
 pub enum CurveRule {
-    /// Straight.
+    /// A straight line.
     #[default]
     Line,
     /// A circular arc.
     Arc {
-        /// Tangent of a quarter of the swept angle (1); positive turns counter-clockwise, 1 is a half circle.
+        /// Bulge: tangent of a quarter of the swept angle (1); positive if the arc turns counter-clockwise, 1
+        /// for a half circle.
         bulge: Number,
     },
     /// Cubic Bezier curves through knots.
@@ -387,20 +388,20 @@ pub enum CurveRule {
         handles: [PointId; 2],
         /// Points between the ends, in order.
         knots: Vec<Knot>,
-        /// Length to which the curve is drawn by scaling all handles from their points (m); none leaves the
-        /// handles as they are.
+        /// Arc length of the spline (m), reached by scaling the distance of all handles from their points.
+        /// `None`: the handles stay as they are.
         to_length: Option<Number>,
     },
     /// The mirror image of another curve in the line through two points.
     Mirrored {
-        /// The other curve.
+        /// The curve that is mirrored.
         of: CurveId,
-        /// The mirror.
+        /// The mirror line.
         line: [PointId; 2],
     },
-    /// Another curve turned and scaled so that it lies between the ends.
+    /// Another curve, turned and scaled so that it starts and ends at the ends of this curve.
     Copy {
-        /// The other curve.
+        /// The curve that is copied.
         of: CurveId,
     },
 }
@@ -438,7 +439,7 @@ fields!(
     }),
 );
 
-/// A point a spline goes through, with its handles.
+/// A point that a spline passes through, with its handles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Knot {
     /// Handle before the point.

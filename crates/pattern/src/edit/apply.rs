@@ -8,9 +8,9 @@ impl Pattern {
     /// Applies edits in order. On an error the document is unchanged.
     ///
     /// # Errors
-    /// A name that no part may have, a number that is not finite, a reference to an id that was never given
-    /// or that has another kind. A reference to a part that was removed is no error: it waits for the part to
-    /// come back.
+    /// A name that is not allowed for a part, a number that is not finite, a reference to an id that was
+    /// never given or that belongs to a part of another kind. A reference to a part that was removed is no
+    /// error, as the part may come back.
     pub fn apply(&mut self, edits: &[Edit]) -> Result<(), EditError> {
         let mut changed = self.clone();
         for edit in edits {
@@ -178,7 +178,7 @@ impl Pattern {
         }
     }
 
-    /// Refuses references to ids that were never given or that belong to parts of other kinds.
+    /// Refuses references to ids that were never given or that belong to parts of another kind.
     fn check_references(&self, entity: &Entity) -> Result<(), EditError> {
         let mut parts = None;
         for reference in entity.references() {
@@ -205,7 +205,7 @@ impl Pattern {
         Ok(())
     }
 
-    /// Whether a part that stands in a list of its own is in the pattern.
+    /// Whether a part of a kind that is often looked up is in the pattern; `false` for parts of other kinds.
     fn has(&self, part: PartId) -> bool {
         match part {
             PartId::Variable(id) => self.variables.iter().any(|v| v.id == id),
@@ -214,7 +214,7 @@ impl Pattern {
             PartId::Panel(id) => self.panel(id).is_some(),
             PartId::Fabric(id) => self.fabric(id).is_some(),
             PartId::Curve(id) => self.curve(id).is_some(),
-            // These kinds are seldom asked for: they are searched among all parts.
+            // These kinds are seldom looked up: the caller searches for them among all parts.
             PartId::Size(_)
             | PartId::Line(_)
             | PartId::Edge(_)

@@ -20,15 +20,16 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// One change of a pattern, in absolute values: it has the same meaning whenever it is applied.
+/// One change of a pattern. It gives new values, not differences, so its meaning does not depend on earlier
+/// changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Edit {
-    /// Adds a part at the end of its list, or replaces the one with the same id.
+    /// Adds a part at the end of its list, or replaces the part with the same id.
     Put(Entity),
-    /// Removes a part. References to it stay and wait for its return.
+    /// Removes a part. References to it stay, and are valid again if the part comes back.
     Remove(PartId),
-    /// Moves a part to another place of its list, counted from 0 and clamped.
+    /// Moves a part to another index of its list, counted from 0; an index beyond the end means the end.
     Order {
         /// The part.
         part: PartId,
@@ -37,7 +38,7 @@ pub enum Edit {
     },
 }
 
-/// A part of a document as edits carry it.
+/// A part of a document, as edits contain it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Entity {
@@ -65,14 +66,14 @@ pub enum Entity {
     Guide(Arc<Guide>),
 }
 
-/// The properties of a pattern besides its parts.
+/// Properties of the pattern itself, which belong to no part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Head {
     /// Name to show.
     pub name: String,
     /// Unit in which lengths are shown.
     pub unit: DisplayUnit,
-    /// The size used when none is asked for.
+    /// The size used when no other is asked for.
     pub base_size: Option<SizeId>,
 }
 
@@ -83,7 +84,7 @@ pub struct SheetHead {
     pub id: SheetId,
     /// Name to show and for formulas.
     pub name: String,
-    /// The panel stage that the sheet lies on; none for a free sheet.
+    /// The panel stage that the sheet lies on; `None`: the sheet is free.
     pub on: Option<(PanelId, Option<OperationId>)>,
     /// Position of the sheet's origin on the table (m).
     pub on_table: [f64; 2],
@@ -92,7 +93,7 @@ pub struct SheetHead {
 /// Reason why edits were refused. The document is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// A part that the edit names is not there.
+    /// The part that the edit names does not exist.
     #[error("{0} is not there: choose one that is")]
     Missing(String),
     /// A name cannot be used.
@@ -100,7 +101,7 @@ pub enum EditError {
         "{0:?} cannot be a name: use 1 to 80 characters without quotes, control characters or spaces at the ends"
     )]
     Name(String),
-    /// A name or id is taken.
+    /// A name or id is used by another part.
     #[error("{0} is taken: choose another")]
     Taken(String),
     /// A number is not finite.
@@ -109,14 +110,14 @@ pub enum EditError {
     /// The part refers to an id that was never given, or to a part of another kind.
     #[error("{what} refers to {to}, which {why}: refer to a part of the document")]
     Reference {
-        /// The part that refers.
+        /// The part that contains the reference.
         what: String,
-        /// The part referred to.
+        /// The part that is referred to.
         to: String,
         /// The fault of the reference.
         why: &'static str,
     },
-    /// The edit makes no sense here.
+    /// The edit cannot be done in this document.
     #[error("{message}: {hint}")]
     Impossible {
         /// Description of the fault.
@@ -127,7 +128,7 @@ pub enum EditError {
 }
 
 impl Entity {
-    /// Identifier of the part; none for the head.
+    /// Identifier of the part. `None`: the entity is the head of the pattern.
     pub fn id(&self) -> Option<PartId> {
         Some(match self {
             Self::Head(_) => return None,
@@ -144,7 +145,7 @@ impl Entity {
         })
     }
 
-    /// Name of the part; for a guide, which has none, its kind.
+    /// Name of the part; guides have no name, for them their kind.
     pub fn name(&self) -> &str {
         match self {
             Self::Head(head) => &head.name,

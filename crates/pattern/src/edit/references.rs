@@ -49,8 +49,8 @@ impl From<&Sheet> for SheetHead {
 }
 
 impl Entity {
-    /// The part of the entity. A sheet without its points and curves is written into the sheet that is
-    /// passed in.
+    /// The part in the entity, to be visited. The head of a sheet is written into `sheet`, since only whole
+    /// sheets can be visited.
     fn part<'e>(&'e self, sheet: &'e mut Sheet) -> &'e dyn Fields {
         match self {
             Self::Head(head) => head,
@@ -70,7 +70,7 @@ impl Entity {
         }
     }
 
-    /// Passes the part of the entity to a function that may change it.
+    /// Calls `change` with the part of the entity.
     pub(crate) fn change(&mut self, change: &mut dyn FnMut(&mut dyn Fields)) {
         match self {
             Self::Head(head) => change(head),
@@ -91,7 +91,7 @@ impl Entity {
         }
     }
 
-    /// The sheet that a point or a curve is on.
+    /// The sheet that a point or a curve is on; `None` for other entities.
     pub(crate) fn sheet_mut(&mut self) -> Option<&mut crate::SheetId> {
         match self {
             Self::Point(sheet, _) | Self::Curve(sheet, _) => Some(sheet),
@@ -107,14 +107,14 @@ impl Entity {
         }
     }
 
-    /// Every part that the entity refers to.
+    /// All parts that the entity refers to.
     pub fn references(&self) -> Vec<PartId> {
         let found = fields::references(self.part(&mut Sheet::default()));
         match self {
             Self::Point(sheet, _) | Self::Curve(sheet, _) => {
                 std::iter::once((*sheet).into()).chain(found).collect()
             }
-            // Each part once, however many pieces refer to it.
+            // Each part is listed once, however many pieces of the marker refer to it.
             Self::Marker(_) => found
                 .into_iter()
                 .collect::<BTreeSet<_>>()
@@ -131,7 +131,7 @@ impl Entity {
         }
     }
 
-    /// Whether every number in the entity is finite.
+    /// Whether all numbers in the entity are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let mut sheet = Sheet::default();
         fields::numbers(self.part(&mut sheet))
@@ -139,14 +139,14 @@ impl Entity {
             .all(Number::is_finite)
     }
 
-    /// The numbers of the entity, or of one part of it, in the order in which they are shown.
+    /// The numbers of the entity, or of the part `part` of it, in the order in which inspectors show them.
     pub(crate) fn number_entries(&self, part: Option<PartId>) -> Vec<fields::NumberEntry> {
         fields::number_entries(self.part(&mut Sheet::default()), part)
     }
 }
 
 impl Pattern {
-    /// Every part as an entity, with its place.
+    /// All parts as entities, each with its diagnostic place.
     pub fn entities(&self) -> Vec<(Entity, Place)> {
         let mut all: Vec<(Entity, Place)> = Vec::new();
         let mut put = |entity: Entity, place: Place| all.push((entity, place));
@@ -185,7 +185,7 @@ impl Pattern {
         all
     }
 
-    /// The entity that a part is or belongs to; none if the part is not in the pattern.
+    /// The entity that is the part or contains it. `None`: the part is not in the pattern.
     pub(crate) fn entity_with(&self, part: PartId) -> Option<Entity> {
         let panel = |owns: &dyn Fn(&crate::Panel) -> bool| {
             let panel = self.panels.iter().find(|panel| owns(panel))?;
@@ -221,7 +221,7 @@ impl Pattern {
         }
     }
 
-    /// The places of all parts that refer to a part, by its id or by its name.
+    /// Diagnostic places of all parts that refer to a part, by its id or by its name.
     pub fn users(&self, part: PartId) -> Vec<Place> {
         let names = Names::new(self);
         let by_name = |entity: &Entity| {

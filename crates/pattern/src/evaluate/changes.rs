@@ -8,11 +8,11 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 impl Evaluation {
-    /// Sets the definitions that changed, and returns their nodes.
+    /// Sets the definitions that differ from the pattern `before`, and returns the numbers of their nodes.
     pub(super) fn take_over(&mut self, before: &Pattern) -> Vec<u32> {
         let pattern = self.pattern.clone();
         let mut changed: Vec<u32> = Vec::new();
-        // Sheets that are new or lie on another stage than before.
+        // Sheets that are new, or that lie on another panel stage than before.
         let mut laid: Vec<Arc<Sheet>> = Vec::new();
         let same = |a: usize, b: usize, equal: &dyn Fn(usize) -> bool| a == b && (0..a).all(equal);
         if !same(pattern.variables.len(), before.variables.len(), &|k| {
@@ -131,8 +131,8 @@ impl Evaluation {
                     &mut changed,
                 );
             }
-            // A trued edge keeps its direction at a corner where a seam ends, so these stages depend on
-            // the seams.
+            // A trued edge keeps its direction at a corner where a seam ends, so stages with trued darts
+            // depend on the seams.
             let trued = pattern.panels.iter().flat_map(|panel| {
                 let own = panel.operations.iter();
                 let own = own.filter(|step| step.kind.may_true());
@@ -168,7 +168,7 @@ impl Evaluation {
         }
     }
 
-    /// The number of a node; the node is made if it is not there.
+    /// The number of a node; a node that does not exist is made.
     pub(super) fn number_of(&mut self, node: Node) -> u32 {
         if let Some(&k) = self.index.get(&node) {
             return k;
@@ -222,8 +222,8 @@ impl Evaluation {
         }
     }
 
-    /// Has the dependencies of a node found again whenever the lines of these panels change, and of
-    /// no others.
+    /// Registers the panels whose lines decide the dependencies of a node: when these lines change, the
+    /// dependencies are found again. Panels registered before are dropped.
     fn watch(&mut self, k: u32, panels: Vec<PanelId>) {
         if self.nodes[k as usize].watches == panels {
             return;
@@ -240,7 +240,7 @@ impl Evaluation {
         }
     }
 
-    /// Finds the nodes that a node depends on; returns whether they changed.
+    /// Finds the nodes that a node depends on; returns whether its dependencies changed.
     pub(super) fn set_needs(&mut self, k: u32) -> bool {
         let definition = self.nodes[k as usize].definition.clone();
         let found = Needs::of(&definition, &self.pattern, &self.names);
@@ -287,8 +287,8 @@ fn panel_nodes(panel: &Panel) -> Vec<Node> {
         .collect()
 }
 
-/// Whether parts were added, removed, reordered or renamed: names in formulas may then lead to other parts,
-/// and messages may be worded differently.
+/// Whether parts were added, removed, reordered or renamed. Names in formulas may then stand for other parts,
+/// and messages may have other words.
 pub(super) fn is_renamed(before: &Pattern, now: &Pattern) -> bool {
     !alike(&before.sizes, &now.sizes, |_, _| false)
         || !alike(&before.fabrics, &now.fabrics, |a, b| {
@@ -312,7 +312,7 @@ pub(super) fn is_renamed(before: &Pattern, now: &Pattern) -> bool {
         })
 }
 
-/// Whether two lists have parts with the same names and ids in the same order.
+/// Whether two lists have the same number of parts, each equal to its counterpart by `same`.
 fn alike<T>(before: &[Arc<T>], now: &[Arc<T>], same: impl Fn(&T, &T) -> bool) -> bool {
     let mut pairs = before.iter().zip(now);
     before.len() == now.len() && pairs.all(|(a, b)| Arc::ptr_eq(a, b) || same(a, b))

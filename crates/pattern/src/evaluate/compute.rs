@@ -32,13 +32,13 @@ impl Evaluation {
         (value.ok_or(cause), computation.diagnostics)
     }
 
-    /// The diagnostic for a number that depends on itself.
+    /// The diagnostic for a node that depends on itself.
     fn cycle(&self, k: u32) -> Diagnostic {
         let mut names: Vec<String> = Vec::new();
         let mut at = k;
         let component = self.nodes[k as usize].cycle;
         let mut seen = std::collections::HashSet::new();
-        // A walk along dependencies inside the component returns to a node that it has met.
+        // A walk along dependencies inside the cycle's component comes back to a node that it has visited.
         while seen.insert(at) {
             if names.len() < CYCLE_NAMES {
                 names.push(self.node_words(at));
@@ -142,8 +142,7 @@ impl Computation<'_> {
         }
     }
 
-    /// The value of a measurement, else of the variable that now has this name; none for a word that
-    /// is neither.
+    /// The value of a measurement, else of the variable that has this name now. `None`: the word is neither.
     fn word(&mut self) -> Option<Value> {
         let evaluation = self.evaluation;
         let Node::Word(number) = evaluation.nodes[self.k as usize].node else {

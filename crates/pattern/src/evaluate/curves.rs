@@ -8,12 +8,12 @@ use crate::{Code, Curve, CurveRule, Edge, Knot, Panel, Place, PointId, PointRule
 use std::sync::Arc;
 use toile_geometry::{Curve as Piece, Path, Vec2};
 
-/// A point this near to a curve is on it (m).
+/// Largest distance from a curve at which a point counts as on it (m).
 const ON_CURVE: f64 = 1e-6;
 /// Greatest factor by which the handles of a spline are scaled to reach its length (1).
 const MAX_SCALE: f64 = 16.0;
 
-/// Curve pieces that make up a curve (m).
+/// The pieces of a curve, as one path (m).
 pub(super) fn curve(c: &mut Computation<'_>, curve: &Arc<Curve>) -> Option<Arc<Path>> {
     let result = pieces(c, curve).map(|pieces| Arc::new(Path::new(pieces)));
     if result.is_ok() {
@@ -75,7 +75,7 @@ fn pieces(c: &mut Computation<'_>, curve: &Curve) -> Result<Vec<Piece>, Failure>
     }
 }
 
-/// A curve turned and scaled so that it leads from one given point to another.
+/// A curve turned and scaled so that it leads from `start` to `end`.
 fn copied(path: &Path, [start, end]: [Vec2; 2]) -> Result<Vec<Piece>, Failure> {
     let (Some(first), Some(last)) = (path.curves().first(), path.curves().last()) else {
         return Ok(Vec::new());
@@ -98,10 +98,10 @@ fn copied(path: &Path, [start, end]: [Vec2; 2]) -> Result<Vec<Piece>, Failure> {
     Ok(placed.collect())
 }
 
-/// Points of a spline with the handles before and after each (m).
+/// A spline: its points, and the handles of the pieces between them (m).
 struct Spline {
     points: Vec<Vec2>,
-    /// Handles of each piece at its start and at its end, relative to these points.
+    /// Handles at the start and the end of each piece, as vectors from these points (m).
     handles: Vec<[Vec2; 2]>,
 }
 
@@ -127,7 +127,7 @@ impl Spline {
         Ok(Self { points, handles })
     }
 
-    /// The pieces with all handles scaled.
+    /// The pieces of the spline, with all handles scaled by the factor `scale`.
     fn scaled(&self, scale: f64) -> Vec<Piece> {
         let ends = self.points.windows(2);
         let pieces = ends.zip(&self.handles).map(|(ends, handles)| Piece::Cubic {
@@ -138,7 +138,8 @@ impl Spline {
         pieces.collect()
     }
 
-    /// The pieces with their handles scaled so that they have the wanted total length, by bisection.
+    /// The pieces of the spline, with all handles scaled so that the spline has the wanted length, by
+    /// bisection.
     fn to_length(&self, length: f64) -> Result<Vec<Piece>, Failure> {
         let excess = |scale: f64| -> f64 {
             self.scaled(scale).iter().map(Piece::length).sum::<f64>() - length
@@ -173,7 +174,7 @@ impl Spline {
     }
 }
 
-/// The stretch of its curve that an edge follows (m).
+/// The stretch of a curve that an edge follows (m).
 pub(super) fn edge(c: &mut Computation<'_>, panel: &Panel, edge: &Edge) -> Option<Arc<Path>> {
     let result = stretch(c, edge);
     if result.is_ok() {
@@ -200,7 +201,7 @@ fn stretch(c: &mut Computation<'_>, edge: &Edge) -> Result<Arc<Path>, Failure> {
     Ok(Arc::new(path.between(from, to)))
 }
 
-/// Arc length of a point on a curve from the curve's start (m).
+/// Arc length from the start of a curve to a point on it (m).
 fn along(
     c: &mut Computation<'_>,
     path: &Path,

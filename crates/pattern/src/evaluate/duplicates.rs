@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 const HINT: &str = "rename or renumber one of them";
 
-/// Collects a diagnostic for each name that several parts of one owner share.
+/// Collects a diagnostic for each name that several parts with the same owner have.
 struct Finder(Vec<Diagnostic>);
 
 impl Finder {
@@ -27,8 +27,8 @@ impl Finder {
     }
 }
 
-/// Duplicate ids, and names that formulas or commands use, are errors: a reference would be ambiguous. A
-/// duplicate of a name that is only shown is a warning.
+/// Diagnostics for duplicates. Duplicate ids, and names that formulas or commands use, are errors, as a
+/// reference would be ambiguous; a duplicate of a name that is only shown is a warning.
 pub(super) fn duplicates(pattern: &Pattern) -> Vec<Diagnostic> {
     let (error, warning) = (Severity::Error, Severity::Warning);
     let mut finder = Finder(Vec::new());

@@ -11,7 +11,7 @@ use std::collections::{BinaryHeap, HashSet};
 use std::sync::Arc;
 
 impl Evaluation {
-    /// Brings all values up to date with a pattern and its wearer.
+    /// Brings all values up to date with a pattern and a wearer.
     pub fn update(&mut self, pattern: &Pattern, wearer: impl Into<Wearer>) -> Update {
         let known = self.nodes.len();
         let dirty = self.take_changes(pattern, Some(wearer.into()));
@@ -21,8 +21,8 @@ impl Evaluation {
         }
     }
 
-    /// Brings these points and everything that they depend on up to date with a pattern, and nothing else.
-    /// For planners, which read the positions and then drop the evaluation.
+    /// Brings these points and all values that they depend on up to date with a pattern; other values stay
+    /// outdated. For planners, which read the positions of the points and then discard the evaluation.
     pub(crate) fn update_points(&mut self, pattern: &Pattern, points: &[PointId]) {
         let dirty = self.take_changes(pattern, None);
         let nodes = points.iter().map(|&id| Node::Point(id));
@@ -36,7 +36,7 @@ impl Evaluation {
         self.recompute_among(dirty, |k| wanted.contains(&k));
     }
 
-    /// Takes over the changes of the pattern, and the wearer if one is given; returns the nodes to
+    /// Takes over the changes of the pattern, and the wearer if it is not `None`; returns the nodes that must
     /// be recomputed.
     fn take_changes(&mut self, pattern: &Pattern, wearer: Option<Wearer>) -> HashSet<u32> {
         self.revision += 1;
@@ -55,7 +55,7 @@ impl Evaluation {
             self.duplicates = duplicates(pattern);
         }
         if renamed || remeasured {
-            // A part that was not found may exist now, and messages may name parts differently.
+            // A part that a formula did not find may exist now, and messages may have other words.
             dirty.extend((0..self.nodes.len() as u32).filter(|&k| {
                 let state = &self.nodes[k as usize];
                 let is_word = matches!(state.node, Node::Word(_));
@@ -69,7 +69,7 @@ impl Evaluation {
         dirty
     }
 
-    /// Finds the dependencies of the nodes again, and sorts the graph anew if they changed.
+    /// Finds the dependencies of these nodes again, and sorts the graph anew if they changed.
     fn follow_needs(&mut self, dirty: &mut HashSet<u32>) {
         let mut waiting: Vec<u32> = dirty.iter().copied().collect();
         waiting.sort_unstable();
@@ -79,7 +79,7 @@ impl Evaluation {
             for k in waiting.drain(..) {
                 reordered |= self.set_needs(k);
             }
-            // Words met for the first time depend on the variables with that name.
+            // Words that formulas use for the first time depend on the variables with their names.
             waiting.extend(known..self.nodes.len() as u32);
             dirty.extend(&waiting);
         }
@@ -92,8 +92,8 @@ impl Evaluation {
         }
     }
 
-    /// Sorts all nodes so that each comes after those that it depends on, and finds cycles: strongly
-    /// connected components by Tarjan (1972), which come out in that order.
+    /// Sorts all nodes so that each follows those that it depends on, and finds cycles. Tarjan's algorithm
+    /// (1972) gives the strongly connected components in that order.
     fn order(&mut self) {
         const UNSEEN: u32 = u32::MAX;
         let count = self.nodes.len();
@@ -106,7 +106,8 @@ impl Evaluation {
             if index[root as usize] != UNSEEN {
                 continue;
             }
-            // Each call of the recursive form is a node, with the number of its dependencies followed so far.
+            // Each call of the recursive form is an entry: the node, and the number of its dependencies
+            // visited so far.
             let mut calls: Vec<(u32, usize)> = vec![(root, 0)];
             while let Some((v, followed)) = calls.pop() {
                 let at = v as usize;
@@ -145,7 +146,7 @@ impl Evaluation {
                         .iter()
                         .copied()
                         .min_by_key(|&w| match self.nodes[w as usize].node {
-                            // A word is part of a cycle through the variable that it names.
+                            // A word is part of a cycle through the variable with its name.
                             Node::Word(_) => (true, Node::Word(0)),
                             node @ (Node::Variable(_)
                             | Node::Point(_)
@@ -165,7 +166,7 @@ impl Evaluation {
                     state.rank = rank;
                     let was = std::mem::replace(&mut state.cycle, cycle);
                     if was.is_some() && !is_cycle {
-                        // The node has left a cycle: it is computed like a new one.
+                        // The node is no longer in a cycle: it is computed like a new one.
                         state.changed = 0;
                     }
                 }
@@ -174,12 +175,12 @@ impl Evaluation {
         }
     }
 
-    /// Recomputes nodes and their dependants, in order.
+    /// Recomputes nodes and the nodes that depend on them, in order.
     fn recompute(&mut self, dirty: HashSet<u32>) -> Update {
         self.recompute_among(dirty, |_| true)
     }
 
-    /// Recomputes the wanted ones among these nodes and their dependants, in order.
+    /// Recomputes those of these nodes and of their dependants for which `wanted` is true, in order.
     fn recompute_among(&mut self, dirty: HashSet<u32>, wanted: impl Fn(u32) -> bool) -> Update {
         let mut update = Update::default();
         let mut waiting: HashSet<u32> = dirty.into_iter().filter(|&k| wanted(k)).collect();
@@ -194,7 +195,8 @@ impl Evaluation {
             let revision = self.revision;
             let state = self.state_mut(k);
             state.diagnostics = diagnostics;
-            // Dependants report that a part is missing themselves, but not that it has a fault.
+            // Nodes that depend on this one must also be recomputed if its part appears or disappears: they
+            // report a missing part themselves, but not a part with a fault.
             let is_missing = matches!(state.definition, Definition::Missing);
             let was_missing = std::mem::replace(&mut state.missing, is_missing);
             let same = state.changed > 0

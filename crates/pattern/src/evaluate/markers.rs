@@ -3,8 +3,8 @@
 use crate::{Code, Diagnostic, Marker, PartId, Pattern, Place, RuledPieces};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Diagnostics for markers that wait for a removed fabric, panel or size to return: one for each marker and
-/// lost part. The rest of the marker can still be cut.
+/// Diagnostics for markers that refer to a removed fabric, panel or size: one for each marker and removed
+/// part. The rest of such a marker can still be cut.
 pub(super) fn waiting(pattern: &Pattern) -> Vec<Diagnostic> {
     let markers = pattern.markers.iter();
     markers.flat_map(|marker| of(pattern, marker)).collect()
@@ -72,7 +72,7 @@ fn of(pattern: &Pattern, marker: &Marker) -> Vec<Diagnostic> {
     found
 }
 
-/// Removed panels and fabrics that rules of a marker name.
+/// Removed panels and fabrics that are named by rules of a marker.
 fn ruled(pattern: &Pattern, marker: &Marker) -> BTreeSet<PartId> {
     let mut lost = BTreeSet::new();
     for rule in &marker.rules {

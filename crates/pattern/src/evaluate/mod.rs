@@ -2,8 +2,8 @@
 //!
 //! Variables, points, curves, edges, panel stages and seams are the nodes of a graph; its edges are the
 //! dependencies between them. An update takes over changed definitions, sorts the graph anew if dependencies
-//! changed (strongly connected components by Tarjan 1972, on an explicit stack), and recomputes dependants in
-//! that order, stopping where a value stays the same to the bit.
+//! changed (strongly connected components by Tarjan 1972, on an explicit stack), and recomputes the nodes
+//! that depend on the changes, in that order. It stops at a node whose value stays the same to the last bit.
 //!
 //! # Decided with
 //! - [`crate::evaluate::Evaluation::take_over`] (`changes.rs`): which definitions changed;
@@ -46,7 +46,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Every value of a pattern for one wearer. A copy shares all data that do not change in it.
+/// All values of a pattern for one wearer. A clone shares data with the original until either changes them.
 #[derive(Clone, Default)]
 pub struct Evaluation {
     pattern: Pattern,
@@ -55,7 +55,7 @@ pub struct Evaluation {
     index: Arc<HashMap<Node, u32>>,
     words: HashMap<Box<str>, u32>,
     word_texts: Vec<Box<str>>,
-    /// Nodes whose dependencies follow from the lines of a panel.
+    /// For each panel, the nodes whose dependencies are decided by the lines of the panel.
     watchers: Arc<HashMap<crate::PanelId, HashSet<u32>>>,
     names: Arc<crate::formula::Names>,
     /// Diagnostics of ids and names that are used twice.
@@ -70,7 +70,7 @@ pub struct Update {
     pub computed: usize,
     /// Number of nodes whose value changed.
     pub changed: usize,
-    /// Number of nodes met for the first time: new parts, and measurements and lost parts that formulas name.
+    /// Number of new nodes: new parts, and measurements and missing parts that formulas name.
     pub met: usize,
 }
 
@@ -92,7 +92,8 @@ impl Evaluation {
         &self.wearer
     }
 
-    /// The size whose values the numbers take, if the wearer is one of the pattern's sizes.
+    /// The size of the pattern that the wearer is, for numbers with values of their own in a size. `None`:
+    /// the wearer is no size of the pattern.
     pub fn size(&self) -> Option<crate::SizeId> {
         self.wearer.size
     }
@@ -102,9 +103,9 @@ impl Evaluation {
         &self.names
     }
 
-    /// All diagnostics: faults of definitions, one for each cause.
+    /// All diagnostics of the evaluation: faults of definitions, each reported once at its cause.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
-        // Faults of a word that no formula uses any more are left out.
+        // Faults of a word that no formula uses any longer are left out.
         let is_used = |state: &NodeState| match state.node {
             Node::Word(_) => !state.needed_by.is_empty(),
             Node::Variable(_)
@@ -126,7 +127,8 @@ impl Evaluation {
         duplicates.chain(own).chain(markers).collect()
     }
 
-    /// Sort key of a node that does not depend on when it was made: words by their texts, then parts.
+    /// Sort key of a node, independent of the order in which nodes were made: words by their texts come
+    /// first, then parts.
     fn place_in_order(&self, state: &NodeState) -> Result<Node, &str> {
         match state.node {
             Node::Word(word) => Err(&self.word_texts[word as usize]),
@@ -139,7 +141,7 @@ impl Evaluation {
         }
     }
 
-    /// Position of a point (m); none if it cannot be computed.
+    /// Position of a point (m). `None`: it cannot be computed.
     pub fn point(&self, id: PointId) -> Option<Vec2> {
         match self.value(Node::Point(id))? {
             Value::Point(place) => Some(*place),
@@ -147,7 +149,7 @@ impl Evaluation {
         }
     }
 
-    /// Every point that can be computed (m).
+    /// Positions of all points that can be computed (m).
     pub fn points(&self) -> BTreeMap<(SheetId, PointId), Vec2> {
         let sheets = self.pattern.sheets.iter();
         sheets
@@ -156,7 +158,7 @@ impl Evaluation {
             .collect()
     }
 
-    /// A curve as drawn (m); none if it cannot be computed.
+    /// A curve as drawn (m). `None`: it cannot be computed.
     pub fn curve(&self, id: crate::CurveId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Curve(id))? {
             Value::Path(path) => Some(path),
@@ -164,7 +166,7 @@ impl Evaluation {
         }
     }
 
-    /// An edge as drawn (m); none if it cannot be computed.
+    /// An edge as drawn (m). `None`: it cannot be computed.
     pub fn edge(&self, id: crate::EdgeId) -> Option<&Arc<toile_geometry::Path>> {
         match self.value(Node::Edge(id))? {
             Value::Path(path) => Some(path),
@@ -172,7 +174,8 @@ impl Evaluation {
         }
     }
 
-    /// A stage of a panel: as drawn, or after an operation; none if it cannot be drawn.
+    /// A stage of a panel: after the operation `after`, or as drawn if that is `None`. `None`: the stage
+    /// cannot be computed.
     pub fn stage(
         &self,
         panel: crate::PanelId,
@@ -189,7 +192,7 @@ impl Evaluation {
         self.stage(panel.id, panel.operations.last().map(|o| o.id))
     }
 
-    /// The last stage of a panel as it was when it could last be drawn. For display, never for export.
+    /// The last stage of a panel, as it was when it could last be computed. For display, never for export.
     pub fn last_good_stage(&self, panel: &crate::Panel) -> Option<&Arc<crate::Stage>> {
         let node = Node::Stage(panel.id, panel.operations.last().map(|o| o.id));
         match self.state(node)?.last_good.as_ref()? {
@@ -198,7 +201,8 @@ impl Evaluation {
         }
     }
 
-    /// The value of a variable, and the power of length of its unit: 0 plain, 1 a length (m).
+    /// The value of a variable, and its dimension as a power of length: 0 for plain numbers and angles, 1 for
+    /// lengths (m).
     pub fn variable(&self, id: crate::VariableId) -> Option<(f64, i8)> {
         match self.value(Node::Variable(id))? {
             Value::Number(quantity) => Some((quantity.value, quantity.power)),
@@ -218,12 +222,13 @@ impl Evaluation {
         }
     }
 
-    /// Rank of a node in the order of computation: higher than all nodes it depends on, except in a cycle.
+    /// Rank of a node in the order of computation: higher than the ranks of all nodes it depends on, except
+    /// in a cycle.
     pub(crate) fn rank(&self, node: Node) -> Option<u32> {
         self.state(node).map(|state| state.rank)
     }
 
-    /// Adds a node and all its dependants, direct and indirect, to a set.
+    /// Adds a node and all nodes that depend on it, directly or indirectly, to a set.
     pub fn gather_dependants(&self, node: Node, found: &mut HashSet<Node>) {
         let mut open: Vec<Node> = vec![node];
         while let Some(node) = open.pop() {
@@ -239,7 +244,7 @@ impl Evaluation {
         self.index.get(&node).map(|&k| &*self.nodes[k as usize])
     }
 
-    /// A node for changing: copied first if another evaluation shares it.
+    /// A node, to be changed: it is copied first if another evaluation shares it.
     fn state_mut(&mut self, k: u32) -> &mut NodeState {
         Arc::make_mut(&mut self.nodes[k as usize])
     }

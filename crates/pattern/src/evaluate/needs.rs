@@ -8,7 +8,7 @@ use crate::{
     Pattern, PointId, PointRule, Source, StageLineage, WornRule,
 };
 
-/// The nodes that a definition depends on, and the panels whose lines decide which these are.
+/// The nodes that a definition depends on, and the panels whose lines decide these dependencies.
 pub(crate) struct Needs<'d> {
     pattern: &'d Pattern,
     names: &'d Names,
@@ -105,7 +105,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// Adds the points and curves that a part is drawn from.
+    /// Adds the points and curves that the part's own fields name.
     fn sources(&mut self, part: &dyn Fields) {
         let points = fields::points(part).into_iter();
         self.nodes.extend(points.map(Node::Point));
@@ -113,7 +113,8 @@ impl<'d> Needs<'d> {
         self.nodes.extend(curves.map(Node::Curve));
     }
 
-    /// Adds the dependencies of the lines that an operation inserts into a panel, or of the lines as drawn.
+    /// Adds the dependencies of the lines that the operation `by` inserts into a panel; of the lines as drawn
+    /// if it is `None`.
     fn lines(&mut self, panel: &Panel, by: Option<OperationId>) {
         let own = panel.lines.iter().filter(|line| line.by == by);
         for edge in own.flat_map(|line| &line.edges) {
@@ -122,7 +123,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// Adds the dependencies of a point that lies at a mark of the stage under its sheet.
+    /// Adds the dependencies of a point that is placed by a mark on the panel stage that its sheet lies on.
     fn on_stage(&mut self, point: PointId, at: &Mark) {
         let on = self.pattern.point(point).and_then(|found| found.0.on);
         let Some((panel, after)) = on else {
@@ -136,7 +137,8 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// Adds the dependencies of the notches that are placed after this many operations.
+    /// Adds the dependencies of the notches that are placed once the first `step` operations of the panel are
+    /// done.
     fn notches(&mut self, panel: &Panel, step: usize) {
         let lineage = self.stage_lineage(panel);
         for notch in &panel.notches {
@@ -150,7 +152,7 @@ impl<'d> Needs<'d> {
         }
     }
 
-    /// The stages that lead to a panel; they follow from the panels that it is a side of.
+    /// The stages that lead to a panel. They depend on all panels that it is a side of, which are added too.
     fn stage_lineage(&mut self, panel: &Panel) -> StageLineage {
         let parents = self.pattern.lineage(panel).into_iter().skip(1);
         self.panels.extend(parents.map(|parent| parent.id));
@@ -160,8 +162,8 @@ impl<'d> Needs<'d> {
         self.pattern.stage_lineage(panel)
     }
 
-    /// Adds the dependencies of the mark's number, and the stage that the mark is placed on if that comes
-    /// before this many of the panel's operations are done.
+    /// Adds the dependencies of the mark's number, and the stage that the mark is placed on if that stage
+    /// comes before the first `before` operations of the panel are done.
     fn mark(&mut self, panel: &Panel, mark: &Mark, before: Option<usize>) {
         let lineage = self.stage_lineage(panel);
         self.numbers(match mark {
@@ -239,7 +241,7 @@ impl<'d> Needs<'d> {
     }
 }
 
-/// The drawn edges between two corners of one line; none if a corner was made by an operation.
+/// The drawn edges between two corners of one line. `None`: an operation made one of the corners.
 pub(crate) fn drawn_stretch(lines: &[Line], ends: [CornerName; 2]) -> Option<Vec<&Edge>> {
     let [Name::Drawn(from), Name::Drawn(to)] = ends else {
         return None;

@@ -9,10 +9,10 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
-/// Key of a node: something that has a value.
+/// Key of a node of the evaluation: a part, a panel stage, or a word in formulas.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Node {
-    /// A measurement or another word in formulas, by its number among the words met so far.
+    /// A measurement or other word in formulas, by its number among the words used so far.
     Word(u32),
     /// A variable.
     Variable(VariableId),
@@ -45,7 +45,7 @@ pub(crate) enum Definition {
 }
 
 impl Definition {
-    /// Whether both definitions are the same object, not merely equal.
+    /// Whether `self` and `other` share the same object; equal content is not enough.
     pub fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Missing, Self::Missing) | (Self::Word, Self::Word) => true,
@@ -73,7 +73,7 @@ pub(crate) enum Value {
 /// The value of a seam for one set of measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SeamValue {
-    /// Length by which one side may exceed the other (m).
+    /// Length by which one side may be longer than the other (m).
     pub ease: f64,
     /// Spans of each side in walking order.
     pub sides: [Vec<SpanValue>; 2],
@@ -81,7 +81,7 @@ pub(crate) struct SeamValue {
     pub lengths: [f64; 2],
 }
 
-/// The value of a span: a copy and half of a panel, and stretches of named edges by shares.
+/// The value of a span: a copy and half of a panel, and the stretches of edges that the span covers.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SpanValue {
     pub panel: crate::PanelId,
@@ -90,22 +90,22 @@ pub(crate) struct SpanValue {
     pub stretch: Stretch,
 }
 
-/// The state of a node: its definition, its neighbours in the graph and its value.
+/// The state of a node: its definition, its value, and its neighbours in the graph.
 #[derive(Clone)]
 pub(crate) struct NodeState {
     pub node: Node,
     pub definition: Definition,
     pub needs: Vec<u32>,
     pub needed_by: Vec<u32>,
-    /// Panels from whose lines the dependencies follow.
+    /// Panels whose lines decide the dependencies of the node.
     pub watches: Vec<PanelId>,
-    /// Rank in the order of computation: higher than all nodes it depends on, except in a cycle.
+    /// Rank in the order of computation: higher than the ranks of all nodes it depends on, except in a cycle.
     pub rank: u32,
-    /// The strongly connected component of the node if it is a cycle, named by one of its nodes.
+    /// If the node is in a cycle: a node of that cycle, which stands for the whole of it.
     pub cycle: Option<u32>,
-    /// The value, or the node whose fault keeps this one from having a value.
+    /// The value; else the number of the node whose fault keeps this node from having a value.
     pub value: Result<Value, u32>,
-    /// The last value, shown while the node has none.
+    /// The last value that could be computed, shown while there is none now.
     pub last_good: Option<Value>,
     /// Number of the update at which the value last changed.
     pub changed: u64,

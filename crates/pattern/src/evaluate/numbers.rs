@@ -11,27 +11,27 @@ use crate::{
 use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
-/// Bound of every length of a pattern: a longer one is refused (m).
+/// Bound of all lengths of a pattern (m): a longer one is refused.
 const LONGEST: f64 = 1000.0;
-/// Bound of every plain number and angle of a pattern: a larger one is refused.
+/// Bound of all plain numbers and angles of a pattern (1), (rad): a larger one is refused.
 const LARGEST: f64 = 1e6;
 
-/// The computation of one node: reads values and collects diagnostics.
+/// The computation of one node. It reads values of other nodes and collects diagnostics.
 pub(crate) struct Computation<'e> {
     pub evaluation: &'e Evaluation,
-    /// Index of the node.
+    /// Index of the node that is computed.
     pub k: u32,
     pub diagnostics: Vec<Diagnostic>,
-    /// References not found so far, with their places: several numbers of one place that lack the same part
-    /// have one cause and are reported once.
+    /// References that were not found so far, each with its diagnostic place. Several numbers of one place
+    /// that name the same missing part have one cause, which is reported once.
     pub missed: Vec<(Place, String)>,
-    /// The node whose fault keeps this one from having a value.
+    /// The node whose fault keeps the computed node from having a value.
     pub cause: u32,
 }
 
 impl Evaluation {
-    /// The value of a number that does not belong to a node: a length (m), an angle (rad) or plain, as
-    /// wanted; none if it has no value.
+    /// The value of a number that does not belong to a node: a length (m), an angle (rad) or plain, as `want`
+    /// says. `None`: the number has no value.
     pub fn number(&self, number: &Number, want: Want) -> Option<f64> {
         self.number_of_kind(number, want, &Place::Pattern, "").0
     }
@@ -49,7 +49,8 @@ impl Evaluation {
         value.ok_or_else(|| fault.unwrap_or_else(|| "it has no value yet".into()))
     }
 
-    /// The kind of a number that may be of any kind, as a variable's: a length, an angle, else plain.
+    /// The kind of a number for which all kinds are allowed, such as a variable's: a length, an angle, else
+    /// plain.
     pub fn kind(&self, number: &Number) -> Want {
         let mut computation = Computation::new(self);
         match computation.variable(number) {
@@ -69,7 +70,8 @@ impl Evaluation {
         self.number_of_kind(number, Want::Length, place, what)
     }
 
-    /// The value of a measurement, and whether it was borrowed from the base size because it was not given.
+    /// The value of a measurement. It is taken from the base size if the wearer has none; the flag is then
+    /// `true`.
     pub(super) fn measurement(&self, name: &str) -> Option<(Quantity, bool)> {
         let given = self.wearer.measurements.get(name);
         let base = || self.pattern.base_measurements()?.get(name);
@@ -116,7 +118,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// The value of a number; a fault is reported at `place` and names the number by `what`.
+    /// The value of a number. A fault is reported at `place` and calls the number `what`.
     pub fn number(
         &mut self,
         number: &Number,
@@ -128,7 +130,7 @@ impl<'e> Computation<'e> {
         self.reported(result, place, what)
     }
 
-    /// The value of a number, checked against the bounds of a garment.
+    /// The value of a number, refused if it exceeds the bounds for garments.
     pub fn measure(&mut self, number: &Number, want: Want) -> Result<f64, Failure> {
         self.quantity(number, want).and_then(|q| bounded(q, want))
     }
@@ -161,7 +163,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// The value of a variable, which may have any dimension: the value for a single size takes the dimension
+    /// The value of a variable, which may have any dimension. A value of its own in a size has the dimension
     /// of the usual number.
     pub fn variable(&mut self, number: &Number) -> Result<Quantity, Failure> {
         let found = self.quantity(number, Want::Plain)?;
@@ -174,7 +176,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// Turns a failure into a diagnostic, unless it was already reported at its origin.
+    /// Turns a failure into a diagnostic, unless the fault was already reported at another node.
     pub fn reported<T>(
         &mut self,
         result: Result<T, Failure>,
@@ -208,7 +210,7 @@ impl<'e> Computation<'e> {
         None
     }
 
-    /// The value of a node that this one depends on.
+    /// The value of a node that the computed node depends on.
     pub fn needed(&self, node: Node) -> Result<&Value, Failure> {
         let evaluation = self.evaluation;
         let Some(state) = evaluation.state(node) else {
@@ -236,7 +238,7 @@ impl<'e> Computation<'e> {
         }
     }
 
-    /// Curve pieces of a curve or an edge (m).
+    /// The path of a curve or an edge (m).
     pub fn path(&self, node: Node) -> Result<&std::sync::Arc<Path>, Failure> {
         match self.needed(node)? {
             Value::Path(path) => Ok(path),
@@ -283,7 +285,7 @@ impl Reading<'_, '_> {
         Failure::new(Code::MissingReference, message, hint)
     }
 
-    /// The part, or for an unknown name the part that has this name now.
+    /// The part itself; for an unknown name, the part that has this name now.
     fn bound<'p>(
         &self,
         part: &'p PartReference,
@@ -405,7 +407,7 @@ impl Environment for Reading<'_, '_> {
         let place = |end: CornerName| stage.placed(drawn, name, MarkValue::Corner(end));
         let walked =
             place(ends[0]).and_then(|from| stage.stretch(name, [from, place(ends[1])?], is_sewn));
-        // A stretch that lies on a fold is not there any more after all operations: length 0.
+        // A stretch on a fold line is no edge of the unfolded panel: its finished length is 0.
         Ok(walked.map_or(0.0, |stretch| stage.stretch_length(0, &stretch)))
     }
 
@@ -439,7 +441,7 @@ impl Environment for Reading<'_, '_> {
     }
 }
 
-/// Refuses values of the wrong dimension and values beyond any garment.
+/// Refuses values of the wrong dimension and values that exceed the bounds for garments.
 pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     let Quantity { value, power, .. } = quantity;
     let (wanted, limit, unit) = match want {
@@ -474,7 +476,7 @@ pub(crate) fn bounded(quantity: Quantity, want: Want) -> Result<f64, Failure> {
     Ok(value)
 }
 
-/// Refuses positions beyond any garment.
+/// Refuses positions that exceed the bounds for garments.
 pub(crate) fn bounded_place(place: Vec2) -> Result<Vec2, Failure> {
     for value in [place.x, place.y] {
         bounded(Quantity::length(value), Want::Length)?;

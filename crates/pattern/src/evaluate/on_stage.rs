@@ -9,7 +9,7 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// The position of a point that lies at a mark of the stage under its sheet (m).
+/// The position of a point that is placed by a mark on the panel stage that its sheet lies on (m).
 pub(super) fn point(
     c: &mut Computation<'_>,
     point: &Point,
@@ -45,7 +45,7 @@ pub(super) fn point(
         return None;
     };
     if !has_made(&stage, (pattern, panel, lineage), at) {
-        // The operation itself reports why it could not be done.
+        // The operation that could not be done reports the fault itself.
         let index = &evaluated.c.evaluation.index;
         evaluated.c.cause = index.get(&Node::Stage(panel.id, after)).copied()?;
         return None;
@@ -67,8 +67,8 @@ pub(super) fn point(
 }
 
 impl Pattern {
-    /// Whether a sheet lies on the stage of a panel before one of its operations; lines inserted in between
-    /// do not count.
+    /// Whether a sheet lies on the stage of a panel just before its operation number `step`; operations in
+    /// between may only insert lines.
     pub(crate) fn lies_before(&self, sheet: SheetId, panel: &crate::Panel, step: usize) -> bool {
         let Some((of, after)) = self.sheet(sheet).and_then(|sheet| sheet.on) else {
             return false;
@@ -86,7 +86,7 @@ impl Pattern {
 }
 
 impl PanelEvaluation<'_, '_, '_> {
-    /// The stage with the lines that an operation inserts; none if their sheet lies on another stage.
+    /// The stage with the lines that an operation inserts. `None`: their sheet lies on another stage.
     pub(super) fn insert(
         &mut self,
         stage: &Stage,

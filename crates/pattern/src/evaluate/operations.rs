@@ -14,7 +14,7 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// A stage of a panel; none if its outline or the stage before it cannot be drawn.
+/// A stage of a panel. `None`: its outline or the stage before it cannot be computed.
 pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Option<Arc<Stage>> {
     if step == 0 {
         return PanelEvaluation::new(c, panel).drawn().map(Arc::new);
@@ -24,7 +24,7 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
     let operation = &panel.operations[step - 1];
     let place = Place::Operation(panel.id, operation.id);
     let stage = c.reported(stage, &place, "")?;
-    // An operation that cannot be done is left out, with an error.
+    // An operation that cannot be done is skipped, with an error.
     let mut evaluated = PanelEvaluation::new(c, panel);
     let done = evaluated.done(&stage, (step, operation));
     let mut stage = done.map_or(stage, |mut done| {
@@ -47,7 +47,7 @@ pub(super) fn stage(c: &mut Computation<'_>, panel: &Panel, step: usize) -> Opti
     Some(stage)
 }
 
-/// Whether an operation leaves the outline as it is, except for a dart that it takes out.
+/// Whether an operation leaves the outline as it is, apart from the mouth of a dart.
 fn keeps_outline(kind: &OperationKind) -> bool {
     match kind {
         OperationKind::Dart { .. }
@@ -62,7 +62,7 @@ fn keeps_outline(kind: &OperationKind) -> bool {
 }
 
 impl PanelEvaluation<'_, '_, '_> {
-    /// Reports that an operation leaves its panel as it was.
+    /// Reports that an operation does not change its panel.
     fn note_idle(&mut self, operation: &Operation, place: Place) {
         let what = match &operation.kind {
             OperationKind::Pleat { .. } => "has no depth",
@@ -85,7 +85,7 @@ impl PanelEvaluation<'_, '_, '_> {
         ));
     }
 
-    /// The stage after an operation; none if the operation cannot be done.
+    /// The stage after an operation. `None`: the operation cannot be done.
     fn done(&mut self, stage: &Stage, (step, operation): (usize, &Operation)) -> Option<Stage> {
         let place = Place::Operation(self.panel.id, operation.id);
         match &operation.kind {
@@ -175,7 +175,8 @@ impl PanelEvaluation<'_, '_, '_> {
                 if *keeps_length && *trued && intake > 0.0 {
                     mouth.intake = self.width_kept(stage, &mouth, (step, place, &what));
                 }
-                // Positions on the edge are measured on the edge as drawn, whatever was trued before.
+                // Positions on the edge are measured on the edge as drawn, even if earlier darts of it are
+                // trued.
                 cut_dart(&stage.as_untrued(), &mouth)
             }
             Err(PlaceError::Beyond) => Err(DartError::TooWide),
@@ -204,8 +205,8 @@ impl PanelEvaluation<'_, '_, '_> {
         None
     }
 
-    /// Corners at which edges run on: into their mirror image at a later fold, or across a seam that ends
-    /// there, of this panel or of a panel split off it.
+    /// Corners at which an edge continues smoothly: into its mirror image at a later fold, or across a seam
+    /// that ends there. Seams of this panel and of panels split off it count.
     fn going_on(&self, step: usize) -> Vec<CornerName> {
         let pattern = &self.c.evaluation.pattern;
         let later = self.panel.operations.iter().skip(step);
@@ -225,7 +226,8 @@ impl PanelEvaluation<'_, '_, '_> {
             .collect()
     }
 
-    /// The stage with its darts trued that are to be; reports if the dart of this operation cannot be trued.
+    /// The stage with its darts trued where the document asks for it. Reports if the dart of this operation
+    /// cannot be trued.
     pub(super) fn trued(
         &mut self,
         stage: Stage,
@@ -264,7 +266,7 @@ impl PanelEvaluation<'_, '_, '_> {
         stage
     }
 
-    /// The width of the mouth of a dart that keeps the finished length of its edge (m).
+    /// Width of a dart's mouth with which the finished edge keeps its length although the dart is trued (m).
     fn width_kept(
         &mut self,
         stage: &Stage,

@@ -11,7 +11,7 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// The evaluation of a panel's stages.
+/// The computation of a panel's stages.
 pub(super) struct PanelEvaluation<'c, 'e, 'p> {
     pub c: &'c mut Computation<'e>,
     pub panel: &'p Panel,
@@ -96,8 +96,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// A side of another panel, with its own grain, and with its own allowance on edges that have none of
-    /// their own.
+    /// A panel that is a side of a split panel. It has its own grain, and its own allowance for edges that
+    /// have none themselves.
     fn side(
         &mut self,
         (of, split, side): (PanelId, OperationId, Side),
@@ -129,7 +129,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             Side::Right => 1,
         };
         let Some(found) = whole.sides.get(index) else {
-            // The split itself reports why it could not be done.
+            // The split reports itself why it could not be done.
             self.c.cause = evaluation.index.get(&node).copied().unwrap_or(self.c.k);
             return None;
         };
@@ -150,7 +150,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
                     Name::Made { by, .. } => by == split,
                 };
                 match edge.name.role() {
-                    // The allowance of an opening continues that of the edge before it.
+                    // An opening has the allowance of the edge before it.
                     Some(Role::Opening) => edge.allowance = before,
                     _ if is_general => edge.allowance = general,
                     _ => {}
@@ -161,8 +161,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// The notches that are placed after this many operations: each on the first stage that has the corners
-    /// of its mark.
+    /// The notches that are placed once the first `step` operations are done. Each notch is placed on the
+    /// first stage that has the corners of its mark.
     pub fn notches(&mut self, stage: &Stage, step: usize) -> Vec<StageNotch> {
         let panel = self.panel;
         let mut found = Vec::new();
@@ -197,7 +197,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         })
     }
 
-    /// The curve pieces of an edge, each with its share of the edge.
+    /// The curve pieces of an edge, each with the shares of the edge that it covers.
     fn edge(&mut self, edge: &Edge, general: f64) -> Option<Vec<StageEdge>> {
         let place = Place::Edge(self.panel.id, edge.id);
         let own = edge.allowance.as_ref().and_then(|allowance| {
@@ -256,7 +256,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         })
     }
 
-    /// The position of a mark of an operation, on the first stage that has its corners.
+    /// The position of a mark that an operation names, on the first stage that has the corners of the mark.
     pub fn first_spot(
         &mut self,
         (line, mark): (LineName, &Mark),
@@ -275,12 +275,12 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             return None;
         }
         let stage = self.past(first, place)?;
-        // A missing corner is reported at the operation that should make it.
+        // A missing corner is reported by the operation that should make it.
         self.has_made(&stage, mark).then(|| stage.spot(line, value))
     }
 
-    /// A place on the stage to which an operation is applied: a corner as it is there, any other mark as it
-    /// was on the first stage that had its corners.
+    /// A place on the stage that an operation is applied to. A corner is taken where it is on that stage; any
+    /// other mark where it was on the first stage that has its corners.
     pub fn placed(
         &mut self,
         (line, mark): (LineName, &Mark),
@@ -333,14 +333,14 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         self.gone(place, what, &part);
     }
 
-    /// A notch, given the index of the first stage that has the corners of its mark.
+    /// A notch; `first` is the index of the first stage that has the corners of its mark.
     fn notch(&mut self, stage: &Stage, (notch, first): (&Notch, usize)) -> Option<StageNotch> {
         let place = Place::Notch(self.panel.id, notch.id);
         let what = self.words(&format!("notch {:?}", notch.name));
         let mark = self.mark(&notch.at, &place, &what)?;
         let line = Name::Drawn(notch.line);
-        // A notch whose corners exist before the split is placed on that earlier stage, of the panel that
-        // is split.
+        // A notch whose corners exist before the split is placed on an earlier stage, which belongs to the
+        // panel that is split.
         let found = match first < self.lineage.base {
             true => self.past(first, &place)?.spot(line, mark),
             false => stage.spot(line, mark),
@@ -362,7 +362,7 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
             }
         };
         let Some((point, along)) = stage.at_spot(line, spot) else {
-            // An edge without length is reported itself.
+            // An edge without length is reported by its own node.
             if first < self.lineage.base {
                 self.no_place(PlaceError::Beyond, &place, &what);
             }
@@ -381,8 +381,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
     }
 }
 
-/// Whether a stage has the corners of a mark that operations of the panel make. It lacks them if an operation
-/// could not be done, which is reported there.
+/// Whether a stage has all corners of a mark that operations of the panel make. A corner is missing if its
+/// operation could not be done, which that operation reports.
 pub(super) fn has_made(
     stage: &Stage,
     (pattern, panel, lineage): (&Pattern, &Panel, &StageLineage),

@@ -37,7 +37,7 @@ impl Computation<'_> {
         ))
     }
 
-    /// Start and direction of the line through two points.
+    /// Start of the line through two points, and the vector to its second point (m).
     fn line(&self, [a, b]: [PointId; 2]) -> Result<(Vec2, Vec2), Failure> {
         let start = self.point_at(a)?;
         Ok((start, self.point_at(b)? - start))
@@ -47,7 +47,7 @@ impl Computation<'_> {
 fn construct(c: &mut Computation<'_>, rule: &PointRule) -> Result<Vec2, Failure> {
     match rule {
         PointRule::At { x, y } => c.vector(x, y),
-        // A mark is placed on a stage, not constructed.
+        // A point with this rule is computed by `on_stage`.
         PointRule::Mark { .. } => Err(same_place()),
         PointRule::Offset { base, x, y } => Ok(c.point_at(*base)? + c.vector(x, y)?),
         PointRule::Polar {

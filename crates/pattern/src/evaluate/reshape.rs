@@ -13,7 +13,7 @@ use crate::{
 };
 
 impl PanelEvaluation<'_, '_, '_> {
-    /// The stage after a pivot; none if the pivot cannot be done.
+    /// The stage after a pivot. `None`: the pivot cannot be done.
     pub fn pivot(
         &mut self,
         stage: &Stage,
@@ -94,7 +94,7 @@ impl PanelEvaluation<'_, '_, '_> {
         None
     }
 
-    /// The stage after a spread; none if the spread cannot be done.
+    /// The stage after a spread. `None`: the spread cannot be done.
     pub fn spread(
         &mut self,
         stage: &Stage,
@@ -134,7 +134,7 @@ impl PanelEvaluation<'_, '_, '_> {
         }
     }
 
-    /// The stage with pleats; none if they cannot be folded.
+    /// The stage with pleats. `None`: the pleats cannot be made.
     pub fn pleat(
         &mut self,
         stage: &Stage,
@@ -265,7 +265,7 @@ impl PanelEvaluation<'_, '_, '_> {
         })
     }
 
-    /// The stage with both sides of a split; none if it cannot be split.
+    /// The stage with both sides of a split. `None`: it cannot be split.
     pub fn split(
         &mut self,
         stage: &Stage,
@@ -293,7 +293,8 @@ impl PanelEvaluation<'_, '_, '_> {
         None
     }
 
-    /// Whether an operation was done before this step. If it failed, that is reported there.
+    /// Whether an operation comes before this step and was done. An operation that failed reports the fault
+    /// itself.
     fn is_done(
         &mut self,
         stage: &Stage,

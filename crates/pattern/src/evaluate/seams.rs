@@ -8,7 +8,7 @@ use crate::stage::{MarkValue, PlaceError, Stretch, is_sewn, reversed};
 use crate::{Code, Diagnostic, Line, Mark, Name, Panel, Place, Seam, Span, Stage};
 use std::sync::Arc;
 
-/// The value of a seam; none if a span has no position.
+/// The value of a seam. `None`: a span has no position.
 pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue>> {
     let place = Place::Seam(seam.id);
     let what = format!("seam {:?}, ease", seam.name);
@@ -40,7 +40,7 @@ pub(super) fn seam(c: &mut Computation<'_>, seam: &Seam) -> Option<Arc<SeamValue
             ));
         }
     }
-    // Several spans may have the same fault, which is reported once.
+    // Several spans may have the same fault: it is reported once.
     let mut told: Vec<Diagnostic> = Vec::new();
     for found in std::mem::take(&mut c.diagnostics) {
         if !told.contains(&found) {
@@ -162,8 +162,9 @@ fn locate(c: &mut Computation<'_>, seam: &Seam, span: &Span) -> Option<(SpanValu
     Some((value, length))
 }
 
-/// The edges of a span between its marks after all operations, each mark taken on the first stage that has
-/// its corners; none if an operation that makes a corner failed, which is reported there.
+/// The edges of a span between its two marks, after all operations; each mark is taken on the first stage
+/// that has its corners. `None`: an operation that makes one of the corners failed, which that operation
+/// reports.
 fn stretch(
     c: &mut Computation<'_>,
     (seam, span): (&Seam, &Span),

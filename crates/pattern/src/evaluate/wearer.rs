@@ -7,10 +7,10 @@ use toile_measure::Measurements;
 /// The wearer that a pattern is drafted for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Wearer {
-    /// Measurements of the wearer: lengths (m), angles (rad).
+    /// Measurements of the wearer: lengths (m) and angles (rad).
     pub measurements: Measurements,
-    /// The size of the pattern that is made: numbers take their values for it. None for a body that is no
-    /// size of the pattern.
+    /// The size of the pattern that the wearer is: numbers take their values for this size. `None`: the body
+    /// is no size of the pattern.
     pub size: Option<SizeId>,
 }
 

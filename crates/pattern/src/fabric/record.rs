@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use toile_fabric::{FIGURES, Figure, FigureValue, Material};
 
-/// Figures that journals write under `rheology`, whatever their values.
+/// Figures that journals always write, under the key `rheology`.
 const RHEOLOGY: [&str; 5] = [
     "hardening",
     "viscosity",
@@ -52,7 +52,7 @@ impl Serialize for Fabric {
     }
 }
 
-/// The figures of a material under `rheology`.
+/// The figures of a material that journals write under `rheology`.
 struct Rheology<'a>(&'a Material);
 
 impl Serialize for Rheology<'_> {
@@ -62,7 +62,7 @@ impl Serialize for Rheology<'_> {
     }
 }
 
-/// Reads an object of figures, and gives them to a material.
+/// Reads the object under `rheology`, and sets its figures in a material.
 struct RheologyReader<'a>(&'a mut Material);
 
 impl<'de> DeserializeSeed<'de> for RheologyReader<'_> {

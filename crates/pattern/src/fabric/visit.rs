@@ -5,12 +5,12 @@ use toile_fabric::{Access, Compression, Domain, FIGURES, Figure, Material};
 
 impl Choice for Compression {}
 
-/// Figures that are visited.
+/// The figures to visit, by whether files must have them.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Presence {
-    /// Those that every pattern file has.
+    /// Figures that every pattern file has.
     Always,
-    /// Those that are left out at their default.
+    /// Figures that files leave out if they have their default value.
     UnlessDefault,
 }
 
@@ -20,7 +20,7 @@ fn figures(presence: Presence) -> impl Iterator<Item = &'static Figure> {
         .filter(move |figure| figure.is_always_written == (presence == Presence::Always))
 }
 
-/// The field of a figure that is no list.
+/// The field of a figure that has a single component.
 fn field(figure: &Figure, is_default: bool) -> ValueField {
     let field = key(figure.pattern_key);
     match figure.is_always_written {
@@ -29,7 +29,7 @@ fn field(figure: &Figure, is_default: bool) -> ValueField {
     }
 }
 
-/// The list of the components of a figure.
+/// The list of the components of a figure that has several.
 fn list(figure: &Figure, is_default: bool) -> Group {
     let list = group(figure.pattern_key);
     match figure.is_always_written {
@@ -47,13 +47,13 @@ fn component(figure: &Figure, index: usize) -> ValueField {
     }
 }
 
-/// Shows the figures of a material to a visitor.
+/// Passes the figures of a material to a visitor.
 pub(super) trait VisitFigures<V: ?Sized> {
-    /// Shows those of a presence.
+    /// Passes the figures with this presence to the visitor `v`.
     fn visit_figures(self, presence: Presence, v: &mut V);
 }
 
-/// Shows every figure of a presence, by shared references or by mutable ones.
+/// Visits all figures with a presence. Written once for shared and once for mutable references.
 macro_rules! visit {
     ($material:ident, $presence:ident, $v:ident, $get:ident, $iter:ident) => {
         for figure in figures($presence) {

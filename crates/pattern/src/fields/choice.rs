@@ -3,20 +3,20 @@
 use super::field::{Value, ValueMut, ValueRef};
 use strum::{VariantArray, VariantNames};
 
-/// An enum that files write as one word. Its words are the names that `strum` derives, which equal those
-/// of serde.
+/// An enum that files write as one word. Its words are the variant names from `strum`, which equal those from
+/// serde.
 pub trait Choice: VariantArray + VariantNames + PartialEq + Copy {
     /// All values.
     fn all() -> &'static [Self] {
         <Self as VariantArray>::VARIANTS
     }
 
-    /// Words of all values in files, in the same order.
+    /// Words for all values in files, in the order of [`Self::all`].
     fn words() -> &'static [&'static str] {
         <Self as VariantNames>::VARIANTS
     }
 
-    /// Word of this value in files.
+    /// Word for this value in files.
     fn word(self) -> &'static str {
         let place = Self::all().iter().position(|known| *known == self);
         place.map_or("", |k| Self::words()[k])
@@ -41,7 +41,7 @@ mod tests {
     use crate::*;
     use serde::Serialize;
 
-    /// Checks that files and journals write a choice by the same words.
+    /// Checks that pattern files and journals use the same words for a choice.
     fn alike<T: Choice + Serialize>() {
         for (choice, word) in T::all().iter().zip(T::words()) {
             assert_eq!(serde_json::to_value(choice).unwrap(), *word);

@@ -4,14 +4,14 @@ use super::{Fields, Group, List, NumberField, Optional, Value, ValueField, Visit
 use crate::{AnyId, Mark, Number};
 use toile_measure::Measurements;
 
-/// The number of fields of a list; the list is not changed.
+/// The number of fields that `walk` visits in a list. The list is visited as mutable but not changed.
 pub fn count(walk: &mut dyn FnMut(&mut dyn VisitorMut)) -> usize {
     let mut count = Count(0);
     walk(&mut count);
     count.0
 }
 
-/// Counts the fields of a list.
+/// Visitor that counts the fields of a list.
 struct Count(usize);
 
 impl VisitorMut for Count {

@@ -2,25 +2,25 @@
 
 use crate::Want;
 
-/// Meaning of a file that leaves a field out.
+/// Meaning of a file in which a field is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Absent {
     /// The file is refused.
     Refused,
-    /// The field has this value, (m), (rad) or plain; files write it all the same.
+    /// The field has this value, (m), (rad) or plain; files are written with the field in any case.
     Means(f64),
     /// The field has this value, (m), (rad) or plain; files leave the field out if it has this value.
     LeftOutAt(f64),
 }
 
-/// Position of a number among the numbers of its part in an inspector.
+/// Position of a number among the numbers of its part in inspectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Shown {
-    /// Before the others.
+    /// Before the other numbers.
     First,
-    /// In the order of the file.
+    /// In the order of the fields in files.
     InOrder,
-    /// After the others.
+    /// After the other numbers.
     Last,
 }
 
@@ -31,11 +31,11 @@ pub struct NumberField {
     pub key: &'static str,
     /// Label of the field in inspectors.
     pub label: &'static str,
-    /// Quantity that the number must be.
+    /// Quantity of the number: length, angle, plain or any.
     pub want: Want,
-    /// Meaning of a file that leaves the field out.
+    /// Meaning of a file in which the field is missing.
     pub absent: Absent,
-    /// Position in inspectors.
+    /// Position of the number in inspectors.
     pub shown: Shown,
 }
 
@@ -49,34 +49,34 @@ const fn number(key: &'static str, want: Want) -> NumberField {
     }
 }
 
-/// A length (m).
+/// A field with a length (m), which must be given.
 pub const fn length(key: &'static str) -> NumberField {
     number(key, Want::Length)
 }
 
-/// An angle (rad).
+/// A field with an angle (rad), which must be given.
 pub const fn angle(key: &'static str) -> NumberField {
     number(key, Want::Angle)
 }
 
-/// A plain number.
+/// A field with a plain number, which must be given.
 pub const fn plain(key: &'static str) -> NumberField {
     number(key, Want::Plain)
 }
 
-/// A number of any quantity.
+/// A field with a number of any quantity, which must be given.
 pub const fn any(key: &'static str) -> NumberField {
     number(key, Want::Any)
 }
 
 impl NumberField {
-    /// With a label that differs from the key.
+    /// This field with a label that differs from its key.
     #[must_use]
     pub const fn label(self, label: &'static str) -> Self {
         Self { label, ..self }
     }
 
-    /// A file that leaves the field out means this number; the field is always written.
+    /// This field with a value for files in which it is missing; it is always written.
     #[must_use]
     pub const fn means(self, number: f64) -> Self {
         Self {
@@ -85,7 +85,7 @@ impl NumberField {
         }
     }
 
-    /// The field is left out of files if it has this value.
+    /// This field with a value for files in which it is missing; it is not written if it has this value.
     #[must_use]
     pub const fn left_out_at(self, number: f64) -> Self {
         Self {
@@ -94,7 +94,7 @@ impl NumberField {
         }
     }
 
-    /// Shown before the other numbers of its part.
+    /// This field, shown before the other numbers of its part.
     #[must_use]
     pub const fn shown_first(self) -> Self {
         Self {
@@ -103,7 +103,7 @@ impl NumberField {
         }
     }
 
-    /// Shown after the other numbers of its part.
+    /// This field, shown after the other numbers of its part.
     #[must_use]
     pub const fn shown_last(self) -> Self {
         Self {
@@ -118,27 +118,27 @@ impl NumberField {
 pub struct ValueField {
     /// Key of the field in files.
     pub key: &'static str,
-    /// Quantity of the value, if it is a number with a fraction.
+    /// Quantity of the value, if it is a real number.
     pub want: Want,
-    /// Whether files may leave the field out: it then has the value of an empty part.
+    /// Whether files may leave the field out: it then has the value that it has in an empty part.
     pub may_lack: bool,
-    /// Whether the field is left out on writing.
+    /// Whether the field is left out when its part is written.
     pub is_left_out: bool,
-    /// Value of a flag that a file leaves out, if it differs from that of an empty part.
+    /// Value of a flag that is missing in a file, if it is not the value in an empty part.
     pub absent_flag: Option<bool>,
-    /// Least and greatest value.
+    /// Least and greatest value allowed.
     pub range: Option<[f64; 2]>,
-    /// The number that is written as `null`.
+    /// The number that files write as `null`.
     pub null: Option<f64>,
     /// Whether the value is the name of a part.
     pub is_name: bool,
-    /// Largest value of a count.
+    /// Largest value allowed for a count.
     pub largest: u32,
-    /// Message for a count beyond the largest: the fault, and the advice.
+    /// Message for a count above `largest`: description of the fault, and advice.
     pub beyond: [&'static str; 2],
 }
 
-/// A field that must be there.
+/// A field that files must have.
 pub const fn key(key: &'static str) -> ValueField {
     ValueField {
         key,
@@ -155,13 +155,13 @@ pub const fn key(key: &'static str) -> ValueField {
 }
 
 impl ValueField {
-    /// The field with the name of a part.
+    /// The field for the name of a part.
     pub const NAME: Self = Self {
         is_name: true,
         ..key("name")
     };
 
-    /// A length (m).
+    /// This field with a length as its value (m).
     #[must_use]
     pub const fn length(self) -> Self {
         Self {
@@ -170,7 +170,7 @@ impl ValueField {
         }
     }
 
-    /// An angle (rad).
+    /// This field with an angle as its value (rad).
     #[must_use]
     pub const fn angle(self) -> Self {
         Self {
@@ -179,7 +179,7 @@ impl ValueField {
         }
     }
 
-    /// Files may leave the field out; it is always written.
+    /// This field, which files may leave out; it is always written.
     #[must_use]
     pub const fn may_lack(self) -> Self {
         Self {
@@ -188,7 +188,7 @@ impl ValueField {
         }
     }
 
-    /// Files may leave the field out; it is left out on writing if it has its usual value.
+    /// This field, which files may leave out; it is not written if `is_usual`.
     #[must_use]
     pub const fn left_out_if(self, is_usual: bool) -> Self {
         Self {
@@ -198,7 +198,7 @@ impl ValueField {
         }
     }
 
-    /// A flag with this value if a file leaves it out.
+    /// This field, a flag that has the value `flag` if a file leaves it out.
     #[must_use]
     pub const fn flag_if_absent(self, flag: bool) -> Self {
         Self {
@@ -208,7 +208,7 @@ impl ValueField {
         }
     }
 
-    /// With a least and a greatest value.
+    /// This field with a least and a greatest value.
     #[must_use]
     pub const fn within(self, range: [f64; 2]) -> Self {
         Self {
@@ -217,7 +217,7 @@ impl ValueField {
         }
     }
 
-    /// Written as `null` where it is this number.
+    /// This field, with `number` written as `null`.
     #[must_use]
     pub const fn null_at(self, number: f64) -> Self {
         Self {
@@ -226,7 +226,7 @@ impl ValueField {
         }
     }
 
-    /// With a largest value of a count.
+    /// This field, a count, with its largest value.
     #[must_use]
     pub const fn at_most(self, largest: u16) -> Self {
         Self {
@@ -235,7 +235,7 @@ impl ValueField {
         }
     }
 
-    /// With another message for a count that is too large: the fault, and the advice.
+    /// This field with its own message for a count that is too large: description of the fault, and advice.
     #[must_use]
     pub const fn beyond(self, what: &'static str, hint: &'static str) -> Self {
         Self {
@@ -250,21 +250,21 @@ impl ValueField {
 pub struct Group {
     /// Key of the field in files.
     pub key: &'static str,
-    /// Label of its number, if the label of the number's own field does not suffice.
+    /// Label of the number in the field, if the label of that number's own field is not enough.
     pub label: Option<&'static str>,
-    /// Label of a share in the field.
+    /// Label of the number in the field if it is a share.
     pub share_label: Option<&'static str>,
-    /// Whether files may leave the field out: it is then empty.
+    /// Whether files may leave the field out: the part or list is then empty.
     pub may_lack: bool,
-    /// Whether the field is left out on writing.
+    /// Whether the field is left out when it is written.
     pub is_left_out: bool,
     /// Whether a list is written even if it is empty.
     pub even_empty: bool,
-    /// Message for any fault of the field: the fault, and the advice.
+    /// Message for all faults of the field: description of the fault, and advice.
     pub refusal: Option<[&'static str; 2]>,
 }
 
-/// A field with a part or list that must be there.
+/// A field with a part or list, which files must have.
 pub const fn group(key: &'static str) -> Group {
     Group {
         key,
@@ -278,7 +278,7 @@ pub const fn group(key: &'static str) -> Group {
 }
 
 impl Group {
-    /// With a label for its number.
+    /// This field with a label for its number.
     #[must_use]
     pub const fn label(self, label: &'static str) -> Self {
         Self {
@@ -287,7 +287,7 @@ impl Group {
         }
     }
 
-    /// With a label for a share in it.
+    /// This field with a label for its number if it is a share.
     #[must_use]
     pub const fn share_label(self, label: &'static str) -> Self {
         Self {
@@ -296,7 +296,7 @@ impl Group {
         }
     }
 
-    /// Files may leave the field out; it is always written.
+    /// This field, which files may leave out; it is always written.
     #[must_use]
     pub const fn may_lack(self) -> Self {
         Self {
@@ -305,7 +305,7 @@ impl Group {
         }
     }
 
-    /// Files may leave the field out; it is left out on writing if it is empty.
+    /// This field, which files may leave out; it is not written if `is_usual`.
     #[must_use]
     pub const fn left_out_if(self, is_usual: bool) -> Self {
         Self {
@@ -315,7 +315,7 @@ impl Group {
         }
     }
 
-    /// A list that is written even if it is empty.
+    /// This field, a list that is written even if it is empty.
     #[must_use]
     pub const fn even_empty(self) -> Self {
         Self {
@@ -324,7 +324,7 @@ impl Group {
         }
     }
 
-    /// With its own message for any fault: the fault, and the advice.
+    /// This field with its own message for all faults: description of the fault, and advice.
     #[must_use]
     pub const fn refusal(self, what: &'static str, hint: &'static str) -> Self {
         Self {
@@ -334,7 +334,7 @@ impl Group {
     }
 }
 
-/// A value as it is shown to a visitor.
+/// A value as visitors read it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ValueRef<'a> {
     /// A flag.
@@ -349,25 +349,25 @@ pub enum ValueRef<'a> {
     Word(&'a str),
 }
 
-/// A value as a visitor may change it.
+/// A value as visitors may change it.
 pub enum ValueMut<'a> {
     /// A flag.
     Flag(&'a mut bool),
-    /// A whole number: the largest value, and a function that sets it.
+    /// A whole number: the largest value of its type, and a function that sets it.
     Count(u32, &'a mut dyn FnMut(u32)),
     /// A number: a length (m), an angle (rad) or plain.
     Real(&'a mut f64),
     /// A text.
     Text(&'a mut String),
-    /// A word of a closed list: the list, and a function that sets the word by its index.
+    /// A word of a closed list: the words, and a function that sets the value by the index of its word.
     Word(&'static [&'static str], &'a mut dyn FnMut(usize)),
 }
 
-/// A value of a field.
+/// A value that a field can hold.
 pub trait Value {
     /// The value.
     fn get(&self) -> ValueRef<'_>;
-    /// Passes the value to a function that may change it.
+    /// Calls `by` with the value, to change it.
     fn change(&mut self, by: &mut dyn FnMut(ValueMut<'_>));
 }
 
@@ -409,7 +409,7 @@ macro_rules! counts {
             }
 
             fn change(&mut self, by: &mut dyn FnMut(ValueMut<'_>)) {
-                // The number passed in is at most the largest value.
+                // The visitor passes a count of at most the largest value of the type.
                 by(ValueMut::Count(<$type>::MAX.into(), &mut |count| {
                     *self = count.try_into().unwrap_or(<$type>::MAX);
                 }));

@@ -5,13 +5,13 @@ use crate::{AnyId, Mark, Number};
 use strum::IntoEnumIterator;
 use toile_measure::Measurements;
 
-/// The way in which a file tells that a part is of a kind.
+/// Mark by which a file shows that a part is of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Told {
-    /// By the presence of this field.
+    /// The file has this field.
     Field(&'static str),
-    /// By the presence of these fields together; an empty list marks the kind that is taken if no other
-    /// is told.
+    /// The file has all of these fields. An empty list marks the kind that is assumed if the file shows no
+    /// other.
     By(&'static [&'static str]),
     /// The part is a bare number.
     Number,
@@ -24,27 +24,28 @@ pub enum Told {
 /// A kind of a part.
 #[derive(Clone, Debug)]
 pub struct Kind {
-    /// The way in which files tell the kind.
+    /// Mark by which files show this kind.
     pub told: Told,
     /// Keys of the fields of the kind.
     pub keys: Vec<&'static str>,
-    /// Index of the variant as declared.
+    /// Index of the enum variant, in the order of declaration.
     variant: usize,
 }
 
-/// Messages for a part whose file tells no kind, or two: the fault, and the advice.
+/// Messages for a part whose file shows no kind, or two kinds; each is a description of the fault, and
+/// advice.
 #[derive(Clone, Debug, Default)]
 pub struct Clash {
-    /// Message if no kind is told; without it the part is of the usual kind.
+    /// Message if the file shows no kind; `None`: the part then has the usual kind.
     pub none: Option<[String; 2]>,
-    /// Message if fields of two kinds stand together.
+    /// Message if the file has fields of two kinds.
     pub two: Option<[&'static str; 2]>,
-    /// Index of the kind that is assumed if none is told; without it the last kind.
+    /// Index of the kind that is assumed if the file shows none; `None`: the last kind.
     pub usual: Option<usize>,
 }
 
 impl Kind {
-    /// The fields that tell the kind together.
+    /// The fields that together show the kind.
     pub fn telling(&self) -> &[&'static str] {
         match &self.told {
             Told::Field(field) => std::slice::from_ref(field),
@@ -53,7 +54,7 @@ impl Kind {
         }
     }
 
-    /// A kind that is told by one field and has further fields.
+    /// A kind that is shown by the field `field` and has the fields `further` too.
     pub fn told_by(field: &'static str, further: &[&'static str]) -> Self {
         Self {
             told: Told::Field(field),
@@ -64,7 +65,7 @@ impl Kind {
         }
     }
 
-    /// All kinds of a type, kinds without telling fields last; kinds that are never written are left out.
+    /// All kinds of a type, those that no field shows last; kinds that are never written are left out.
     pub fn all<T: Fields + IntoEnumIterator>(told: impl Fn(&T) -> Told) -> Vec<Self> {
         let kinds = T::iter().enumerate().map(|(variant, blank)| Self {
             told: told(&blank),
@@ -80,7 +81,7 @@ impl Kind {
         kinds
     }
 
-    /// An empty part of a kind.
+    /// An empty part of the kind with this index.
     pub fn blank<T: IntoEnumIterator>(kinds: &[Self], kind: usize) -> Option<T> {
         T::iter().nth(kinds.get(kind)?.variant)
     }

@@ -4,14 +4,14 @@ use super::{Fields, Group, List, NumberField, Optional, Value, ValueField, Visit
 use crate::{AnyId, Mark, Number};
 use toile_measure::Measurements;
 
-/// Every number of a part and of the parts within it.
+/// All numbers of a part and of the parts within it.
 pub fn numbers(part: &dyn Fields) -> Vec<&Number> {
     let mut found = Found::default();
     part.visit(&mut found);
     found.numbers
 }
 
-/// Every mark on a line that a part names.
+/// All marks of a part and of the parts within it: positions on lines.
 pub fn marks(part: &dyn Fields) -> Vec<&Mark> {
     let mut found = Found::default();
     part.visit(&mut found);

@@ -45,10 +45,10 @@ use crate::{AnyId, Mark, Number};
 use std::sync::Arc;
 use toile_measure::Measurements;
 
-/// Key of the field of a part that is written as a bare number or text, not as an object.
+/// Key for a part that files write as a bare number or text, not as an object with fields.
 pub const ITSELF: &str = "";
 
-/// Visits every field of a part in the order of the file.
+/// Visits all fields of a part in the order of the file, to read them.
 ///
 /// No method has a default: a visitor that leaves one out does not compile.
 ///
@@ -60,95 +60,98 @@ pub const ITSELF: &str = "";
 /// }
 /// ```
 pub trait Visitor<'a> {
-    /// The part's own id.
+    /// Called with the part's own id.
     fn own(&mut self, id: &'a dyn AnyId);
-    /// The id of another part.
+    /// Called with the id of another part.
     fn id(&mut self, key: &'static str, id: &'a dyn AnyId);
-    /// A number.
+    /// Called with a number.
     fn number(&mut self, field: NumberField, number: &'a Number);
-    /// A number that may be left out.
+    /// Called with a number that may be left out.
     fn optional_number(&mut self, field: NumberField, number: &'a Option<Number>);
-    /// A text, a flag, a count, a choice, a value.
+    /// Called with a text, a flag, a count, a choice or a real number.
     fn value(&mut self, field: ValueField, value: &'a dyn Value);
-    /// The part is written as just this word.
+    /// Called if files write the part as this one word.
     fn word(&mut self, word: &'static str);
-    /// A table of measurements.
+    /// Called with a table of measurements.
     fn measurements(&mut self, key: &'static str, table: &'a Measurements);
-    /// Tells whether a field is there that may be left out; if it is, the call for the field follows.
+    /// Called with a field that may be left out, to tell whether it is given; if it is, another call passes
+    /// the field itself.
     fn optional(&mut self, key: &'static str, field: &'a dyn Optional);
-    /// A mark on a line.
+    /// Called with a mark: a position on a line.
     fn mark(&mut self, group: Group, mark: &'a Mark);
-    /// A part with fields of its own.
+    /// Called with a part whose fields form a group of their own.
     fn part(&mut self, group: Group, part: &'a dyn Fields);
-    /// A part whose fields stand among those of the part it belongs to.
+    /// Called with a part whose fields files write among those of its owner.
     fn flat(&mut self, part: &'a dyn Fields);
-    /// Fields that are written in an object of their own.
+    /// Called with fields that files write in an object of their own; `walk` visits them.
     fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn Visitor<'a>));
-    /// Fields that are written in a list of fixed length, without their keys.
+    /// Called with fields that files write in a list of fixed length, without keys; `walk` visits them.
     fn list(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn Visitor<'a>));
-    /// A list of any number of parts; the field is left out if the list is empty.
+    /// Called with a list of any number of parts; files leave the field out if the list is empty.
     fn each(&mut self, group: Group, parts: &'a dyn List);
 }
 
-/// Visits every field of a part in the order of the file, to change it.
+/// Visits all fields of a part in the order of the file, to change them. The calls are those of [`Visitor`].
 pub trait VisitorMut {
-    /// The part's own id.
+    /// Called with the part's own id.
     fn own(&mut self, id: &mut dyn AnyId);
-    /// The id of another part.
+    /// Called with the id of another part.
     fn id(&mut self, key: &'static str, id: &mut dyn AnyId);
-    /// A number.
+    /// Called with a number.
     fn number(&mut self, field: NumberField, number: &mut Number);
-    /// A number that may be left out.
+    /// Called with a number that may be left out.
     fn optional_number(&mut self, field: NumberField, number: &mut Option<Number>);
-    /// A text, a flag, a count, a choice, a value.
+    /// Called with a text, a flag, a count, a choice or a real number.
     fn value(&mut self, field: ValueField, value: &mut dyn Value);
-    /// The part is written as just this word.
+    /// Called if files write the part as this one word.
     fn word(&mut self, word: &'static str);
-    /// A table of measurements.
+    /// Called with a table of measurements.
     fn measurements(&mut self, key: &'static str, table: &mut Measurements);
-    /// May add or remove a field that may be left out; if it is there afterwards, the call for the
-    /// field follows.
+    /// Called with a field that may be left out: the visitor may add or remove it. If it is given afterwards,
+    /// another call passes the field itself.
     fn optional(&mut self, key: &'static str, field: &mut dyn Optional);
-    /// A mark on a line.
+    /// Called with a mark: a position on a line.
     fn mark(&mut self, group: Group, mark: &mut Mark);
-    /// A part with fields of its own.
+    /// Called with a part whose fields form a group of their own.
     fn part(&mut self, group: Group, part: &mut dyn Fields);
-    /// A part whose fields stand among those of the part it belongs to.
+    /// Called with a part whose fields files write among those of its owner.
     fn flat(&mut self, part: &mut dyn Fields);
-    /// Fields that are written in an object of their own.
+    /// Called with fields that files write in an object of their own; `walk` visits them.
     fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut));
-    /// Fields that are written in a list of fixed length, without their keys.
+    /// Called with fields that files write in a list of fixed length, without keys; `walk` visits them.
     fn list(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut));
-    /// A list of any number of parts; the field is left out if the list is empty.
+    /// Called with a list of any number of parts; files leave the field out if the list is empty.
     fn each(&mut self, group: Group, parts: &mut dyn List);
 }
 
 /// A part of the document whose fields can be visited.
 pub trait Fields {
-    /// Visits every field, in the order of the file.
+    /// Passes all fields to a visitor that reads, in the order of the file.
     fn visit<'a>(&'a self, v: &mut dyn Visitor<'a>);
-    /// Visits every field for changing, in the order of the file.
+    /// Passes all fields to a visitor that may change them, in the order of the file.
     fn visit_mut(&mut self, v: &mut dyn VisitorMut);
-    /// The kinds of the part, in the order in which a file is asked for them; none if there is only one.
+    /// The kinds of the part, in the order in which a reader looks for them in a file; empty if there is only
+    /// one kind.
     fn kinds(&self) -> &'static [Kind] {
         &[]
     }
-    /// Replaces the part by an empty one of this kind.
+    /// Replaces the part by an empty part of the kind with this index.
     fn become_kind(&mut self, _kind: usize) {}
-    /// Messages for a file that tells no kind, or two.
+    /// Messages for a file that shows no kind, or two kinds.
     fn clash(&self) -> Clash {
         Clash::default()
     }
-    /// The first fault of the part as a whole, though each of its fields is valid by itself.
+    /// First fault of the part as a whole, such as two fields that contradict each other. The single fields
+    /// are checked elsewhere.
     fn fault(&self) -> Option<FieldFault> {
         None
     }
 }
 
-/// A fault of a part, with the field at fault.
+/// A fault of a part, and the field that is at fault.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldFault {
-    /// Key of the field.
+    /// Key of the field that is at fault.
     pub field: &'static str,
     /// Index of the item, from 0, if the field is a list.
     pub item: Option<usize>,
@@ -158,15 +161,15 @@ pub struct FieldFault {
     pub hint: &'static str,
 }
 
-/// A list of parts.
+/// A list of parts, as visitors use it.
 pub trait List {
     /// Number of parts.
     fn count(&self) -> usize;
-    /// One of the parts, by an index below the count.
+    /// The part with index `k`, which is less than the count.
     fn get(&self, k: usize) -> &dyn Fields;
-    /// One of the parts for changing; a shared part is copied first.
+    /// The part with index `k`, to be changed; it is copied first if it is shared.
     fn get_mut(&mut self, k: usize) -> &mut dyn Fields;
-    /// Sets the number of parts; new ones are empty.
+    /// Sets the number of parts; new parts are empty.
     fn resize(&mut self, count: usize);
 }
 
@@ -190,9 +193,9 @@ impl<T: Fields + Default> List for Vec<T> {
 
 /// A field that may be left out.
 pub trait Optional {
-    /// Whether the field is there.
+    /// Whether the field is given.
     fn is_there(&self) -> bool;
-    /// Adds the field, empty, or removes it.
+    /// Adds the field with an empty value, or removes it.
     fn set(&mut self, is_there: bool);
 }
 
@@ -232,16 +235,16 @@ impl<T: Fields + Clone> Fields for Arc<T> {
     }
 }
 
-/// Lists the fields of a type, once for all visitors: `fields!(Type, |self, v| { ... })`. The body
-/// destructures the value by patterns without `..`, so that a forgotten field does not compile, and passes
-/// each field to the visitor `v`; it is compiled twice, once with references and once with mutable ones. Type
-/// parameters stand in front, as in `@[Id: AnyId] Name<Id>`.
+/// Lists the fields of a type, once for all visitors: `fields!(Type, |self, v| { ... })`. The body takes the
+/// value apart by patterns without `..`, so that a forgotten field does not compile, and passes each field to
+/// the visitor `v`. The body is compiled twice: with shared references and with mutable ones. Type parameters
+/// come first, as in `@[Id: AnyId] Name<Id>`.
 ///
-/// An enum whose kind a file tells by its fields adds `, kinds: |self| match self { ... }`, which gives for
-/// each variant the way it is told ([`Told`]), and, for messages of its own, `, clash: ...` ([`Clash`]). The
-/// variants are tried in the order of their declaration, variants without telling fields last.
+/// An enum whose kind a file shows by its fields adds `, kinds: |self| match self { ... }`, which gives for
+/// each variant its mark in files ([`Told`]), and, for its own messages, `, clash: ...` ([`Clash`]). The
+/// variants are tried in the order of declaration, those that no field shows last.
 ///
-/// A field that is forgotten:
+/// A field is forgotten, which does not compile:
 ///
 /// ```compile_fail,E0027
 /// struct Hem { depth: toile_pattern::Number, rolled: bool }

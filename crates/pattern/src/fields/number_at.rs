@@ -18,7 +18,7 @@ pub struct NumberAddress {
 }
 
 impl NumberAddress {
-    /// The address of the number of a part with this path; the number need not exist.
+    /// The address of a number of `part` by its path; the number need not exist.
     pub fn new(part: impl Into<PartId>, path: impl Into<String>) -> Self {
         Self {
             part: part.into(),
@@ -27,7 +27,7 @@ impl NumberAddress {
     }
 }
 
-/// A number of a part, with all data that an inspector shows of it.
+/// A number of a part, with all data that an inspector needs to show it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberEntry {
     /// Address of the number.
@@ -36,31 +36,31 @@ pub struct NumberEntry {
     pub label: &'static str,
     /// Quantity that the number must be.
     pub want: Want,
-    /// The number; none if it is optional and left out.
+    /// The number. `None`: the field is optional and left out.
     pub number: Option<Number>,
-    /// The mark on a line that the number belongs to, if any.
+    /// The mark (position on a line) that the number belongs to, if any.
     pub mark: Option<Mark>,
     /// Index of the cut, pleat or span that the number belongs to, from 0.
     pub item: Option<usize>,
 }
 
-/// A reference to a number for changing.
+/// A reference to a number, to change it.
 pub enum NumberSlot<'e> {
-    /// A number that is always there.
+    /// A number that is always given.
     Always(&'e mut Number),
     /// A number that may be left out.
     Optional(&'e mut Option<Number>),
 }
 
-/// The numbers of a part, which may stand within another, in the order in which they are shown; without a
-/// part the numbers of all parts.
+/// The numbers of `part`, which is `whole` or lies within it, in the order in which they are shown. If `part`
+/// is `None`, the numbers of all parts within `whole`.
 pub fn number_entries(whole: &dyn Fields, part: Option<PartId>) -> Vec<NumberEntry> {
     let mut found = found(whole, part);
     found.sort_by_key(|found| found.shown);
     found.into_iter().map(|found| found.entry).collect()
 }
 
-/// Passes a number of a part, which may stand within another, to a function that may change it; returns
+/// Finds a number of a part, which is `whole` or lies within it, and calls `act` to change it; returns
 /// whether the number was found.
 pub fn with_number(
     whole: &mut dyn Fields,
@@ -79,12 +79,12 @@ pub fn with_number(
     true
 }
 
-/// A path while it is built.
+/// A path of keys and indices, as far as it is built.
 #[derive(Default)]
 struct Path(String);
 
 impl Path {
-    /// Appends a key and, for a list, an index; returns the length that the path had before.
+    /// Appends a key and, for a list, an index; returns the path's length before, for `leave`.
     fn enter(&mut self, key: &str, item: Option<usize>) -> usize {
         let before = self.0.len();
         if !key.is_empty() && before > 0 {
@@ -92,7 +92,7 @@ impl Path {
         }
         self.0.push_str(key);
         if let Some(k) = item {
-            // Writing to a text does not fail.
+            // Writing to a `String` does not fail.
             let _ = write!(self.0, "[{k}]");
         }
         before
@@ -103,7 +103,7 @@ impl Path {
     }
 }
 
-/// A number, with its path from the root.
+/// A number that was found, with its path from the root.
 struct FoundNumber {
     entry: NumberEntry,
     path: String,
@@ -127,11 +127,11 @@ fn found(whole: &dyn Fields, part: Option<PartId>) -> Vec<FoundNumber> {
 
 struct Numbers<'a> {
     part: Option<PartId>,
-    /// The part that is visited, and the length of its own path.
+    /// The part that is being visited, and the length of the path that leads to it.
     owner: Option<PartId>,
     start: usize,
     path: Path,
-    /// Labels of the group: for any number, and for a share.
+    /// Labels given by the group of fields: for its number, and for its number if that is a share.
     labels: [Option<&'static str>; 2],
     mark: Option<&'a Mark>,
     item: Option<usize>,
@@ -164,7 +164,7 @@ impl<'a> Numbers<'a> {
         self.path.leave(before);
     }
 
-    /// Visits everything under a key, and restores the state of the visitor afterwards.
+    /// Visits all fields under a key, and restores the state of the visitor afterwards.
     fn within(&mut self, group: Group, item: Option<usize>, visit: impl FnOnce(&mut Self)) {
         let before = self.path.enter(group.key, item);
         let state = (self.owner, self.start, self.labels, self.mark, self.item);
@@ -231,7 +231,7 @@ impl<'a> Visitor<'a> for Numbers<'a> {
     }
 }
 
-/// Visits only the fields that lead to the wanted number: everything else that it touched would count
+/// Visits only the fields that lead to the wanted number: visiting any other part for changing would mark it
 /// as changed.
 struct Changing<'w> {
     wanted: &'w str,

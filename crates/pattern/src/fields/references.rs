@@ -4,21 +4,21 @@ use super::{Fields, Group, List, NumberField, Optional, Value, ValueField, Visit
 use crate::{AnyId, CurveId, Mark, Number, PartId, PointId};
 use toile_measure::Measurements;
 
-/// Every part that a part refers to, by an id or in a formula, in the order of its fields.
+/// All parts that a part refers to, by id or in a formula, in the order of its fields.
 pub fn references(part: &dyn Fields) -> Vec<PartId> {
     let mut found = References(Vec::new());
     part.visit(&mut found);
     found.0
 }
 
-/// The points that a part is drawn from: points that its own fields name, not points in formulas or marks.
+/// The points that a part is drawn from: those named by its own fields, not those in formulas or marks.
 pub fn points(part: &dyn Fields) -> Vec<PointId> {
     let sources = sources(part).into_iter();
     let points = sources.filter_map(|part| part.try_into().ok());
     points.collect()
 }
 
-/// The curves that a part is drawn from: curves that its own fields name, not curves in formulas or marks.
+/// The curves that a part is drawn from: those named by its own fields, not those in formulas or marks.
 pub fn curves(part: &dyn Fields) -> Vec<CurveId> {
     let sources = sources(part).into_iter();
     let curves = sources.filter_map(|part| part.try_into().ok());

@@ -5,17 +5,17 @@ use crate::{AnyId, Entity, Mark, Name, Number, PartId, PartReference, SizeId, To
 use std::collections::HashMap;
 use toile_measure::Measurements;
 
-/// A map from old ids to new ones. Ids that are not in the map stay as they are.
+/// A map from old ids to new ones. Ids that are not in the map are not changed.
 #[derive(Default)]
 pub struct Remap {
     /// New id of each part.
     pub ids: HashMap<PartId, PartId>,
-    /// New id of each size; numbers lose their values for sizes that are not in the map.
+    /// New id of each size. For sizes that are not in the map, numbers lose their own values.
     pub sizes: HashMap<SizeId, SizeId>,
 }
 
 impl Remap {
-    /// The new id for an id.
+    /// The new id for an old id.
     pub fn new_id<T: Copy + Into<PartId> + From<u32>>(&self, id: T) -> T {
         let found = self.ids.get(&id.into());
         found.map_or(id, |part| T::from(part.number()))
@@ -65,8 +65,8 @@ impl Remap {
 }
 
 impl Remap {
-    /// The entity with all ids replaced, its own too. A fragment contains no sizes and markers; these are
-    /// not changed.
+    /// The entity with all ids replaced, including its own. Copied fragments contain no sizes and markers, so
+    /// these are not changed.
     pub fn entity(&mut self, mut entity: Entity) -> Entity {
         if let Some(sheet) = entity.sheet_mut() {
             *sheet = self.new_id(*sheet);

@@ -2,7 +2,7 @@
 
 use crate::{CornerName, Name, PartReference, Role};
 
-/// A part by its ids: `@p47` a point, `@c12` a curve, `@s9` a seam, `@e33:47:48` a stretch.
+/// Text for a part by its ids: `@p47` a point, `@c12` a curve, `@s9` a seam, `@e33:47:48` a stretch.
 pub(super) fn ids_of(part: &PartReference) -> String {
     let corner = |corner: CornerName| match corner {
         Name::Drawn(point) => point.0.to_string(),
@@ -19,7 +19,7 @@ pub(super) fn ids_of(part: &PartReference) -> String {
     }
 }
 
-/// The part that [`ids_of`] wrote, without its `@`.
+/// The part whose text was made by [`ids_of`]; `text` lacks the `@`.
 pub(super) fn part_of_ids(text: &str) -> Option<PartReference> {
     let (kind, rest) = text.split_at_checked(1)?;
     let corner = |text: &str| -> Option<CornerName> {

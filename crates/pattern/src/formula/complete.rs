@@ -5,18 +5,19 @@ use super::parse::FUNCTION_NAMES;
 use super::{PI, quoted};
 use toile_measure::CATALOGUE;
 
-/// A formula with its last word completed.
+/// A formula with its last word completed, offered while the formula is typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Completion {
-    /// The completed word, as it is shown.
+    /// The completed word, to be shown in the list of proposals.
     pub word: String,
     /// The whole text with the completed word.
     pub text: String,
 }
 
 impl Names {
-    /// Names that the last word of a text may become: measurements, variables, functions and panels, and
-    /// after `panel.` the panel's edges and points. Names that begin with the word come first.
+    /// Names that the last word of a text can be completed to: measurements, variables, functions and panels,
+    /// and after `panel.` the edges and points of that panel. Names that begin with the typed word come
+    /// first.
     pub fn completions(&self, text: &str) -> Vec<Completion> {
         let is_word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
         let start = text
@@ -85,7 +86,8 @@ impl Names {
         let mut words: Vec<String> = variables.collect();
         match &self.measured {
             measured if measured.is_empty() => {
-                // A pattern without sizes uses the wearer's measurements: the whole catalogue is proposed.
+                // A pattern without sizes uses the wearer's measurements: all names of the catalogue are
+                // proposed.
                 words.extend(CATALOGUE.iter().map(|known| known.name.to_owned()));
             }
             measured => words.extend(measured.iter().map(|name| name.to_string())),
@@ -119,7 +121,7 @@ mod tests {
         assert!(found("wai").contains(&"waist".into()));
         assert!(found("2 * (wai").contains(&"2 * (waist".into()));
         assert!(found("le").contains(&"length(".into()));
-        // Nothing is proposed for numbers, complete words and the empty text.
+        // No completion is proposed for numbers, complete words and the empty text.
         for text in ["", "12", "1.5", "waist_ease", "waist + ", "nobody.ar"] {
             assert_eq!(found(text), Vec::<String>::new(), "{text}");
         }

@@ -10,17 +10,17 @@ use toile_geometry::Vec2;
 pub(crate) struct Quantity {
     pub value: f64,
     pub power: i8,
-    /// Whether a plain number is an angle (rad), which is shown in degrees. No formula is refused because
-    /// of it.
+    /// Whether a plain number is an angle (rad), which is shown in degrees. Formulas are checked without it.
     pub is_angle: bool,
 }
 
 /// Reason why a formula has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Failure {
-    /// A value that the formula needs is missing; the fault was reported at the node of that number.
+    /// A value that the formula needs is missing. The fault was reported at the node with this number, which
+    /// lacks the value.
     Reported(u32),
-    /// A fault of this formula, with its column if known.
+    /// A fault of this formula, with its column if that is known.
     Fault {
         code: Code,
         column: Option<usize>,
@@ -40,7 +40,7 @@ impl Failure {
     }
 }
 
-/// Source of the values that formulas name.
+/// Source of the values of the names in formulas.
 pub(crate) trait Environment {
     fn variable(&self, id: VariableId) -> Result<Quantity, Failure>;
     fn measurement(&self, name: &str) -> Result<Quantity, Failure>;
@@ -237,7 +237,7 @@ fn pop<const N: usize>(stack: &mut Vec<Quantity>) -> [Quantity; N] {
 
 type Arithmetic = Result<Quantity, (String, &'static str)>;
 
-/// The common power of length of two values; zero fits any.
+/// The common power of length of two values. Zero without unit has any power. `None`: the powers differ.
 fn common_power(a: Quantity, b: Quantity) -> Option<i8> {
     let any = |q: Quantity| q.value == 0.0 && q.power == 0;
     if a.power == b.power || any(b) {
@@ -271,7 +271,7 @@ fn product(a: Quantity, b: Quantity) -> Arithmetic {
             "a length may be multiplied by plain numbers only, if the result is a length",
         ));
     }
-    // The product of an angle and a length is the length of an arc.
+    // The product of an angle (rad) and a length is a length: that of an arc.
     Ok(Quantity {
         value: a.value * b.value,
         power,

@@ -3,16 +3,16 @@
 use super::{FormulaError, Quantity, RESERVED};
 use std::cell::Cell;
 
-/// A formula's text, and the byte position to be read next.
+/// A formula's text, and the byte position that is read next.
 pub(super) struct Cursor<'a> {
     pub text: &'a str,
     pub at: usize,
-    /// A byte position and the number of characters before it, so that columns are not counted from the
-    /// start again.
+    /// A byte position, and the number of characters before it: columns are counted on from there, not from
+    /// the start.
     counted: Cell<(usize, usize)>,
 }
 
-/// A number with this unit; none if the word is not a unit.
+/// A number with this unit. `None`: the word is no unit.
 fn quantity(number: f64, unit: &str) -> Option<Quantity> {
     Some(match unit {
         "m" => Quantity::length(number),
@@ -144,7 +144,8 @@ impl<'a> Cursor<'a> {
         Ok(constant)
     }
 
-    /// Reads `5/8in` or `1 5/8in`: inches, and the number of bytes read. None for any other text.
+    /// Reads a length such as `5/8in` or `1 5/8in`: inches, and the number of bytes read. `None`: the text is
+    /// no such length.
     fn inch_fraction(&self) -> Option<(f64, usize)> {
         let text = self.rest();
         let number = |from: usize, length: usize| text.get(from..from + length)?.parse().ok();
@@ -187,7 +188,7 @@ impl<'a> Cursor<'a> {
         Ok(quantity)
     }
 
-    /// A name, plain or quoted, and whether it was quoted.
+    /// Reads a name, plain or in quotes; returns also whether it was in quotes.
     pub fn word(&mut self) -> Result<(Box<str>, bool), FormulaError> {
         let first = self.peek();
         let start = self.at;

@@ -42,9 +42,9 @@ use std::sync::Arc;
 const RESERVED: &[&str] = &["and", "or", "not"];
 /// Name of the constant 3.14159..., unless a variable has this name.
 pub(crate) const PI: &str = "pi";
-/// Longest formula that is read, each part's name counted as one byte (bytes).
+/// Longest formula that is accepted (bytes); the name of a part counts as one byte.
 pub const FORMULA_LENGTH: usize = 2000;
-/// Deepest nesting of parentheses, signs and calls that is read.
+/// Deepest nesting of parentheses, signs and calls that is accepted.
 pub const FORMULA_DEPTH: usize = 50;
 
 /// A parsed formula. Two formulas are equal if they compute the same from the same parts.
@@ -73,21 +73,21 @@ pub enum Token {
     Text(Box<str>),
     /// A variable.
     Variable(VariableId),
-    /// A measurement, or a word that is neither variable nor measurement.
+    /// A measurement, or a word that was neither a variable nor a measurement when the formula was read.
     Word(Box<str>),
-    /// A part that is measured.
+    /// A part that the formula measures.
     Part(PartReference),
 }
 
 /// A value that a formula depends on.
 pub(crate) enum Use<'f> {
     Variable(VariableId),
-    /// A measurement, else a variable that did not have this name when the formula was read.
+    /// A measurement, else a variable that has got this name since the formula was read.
     Word(&'f str),
     Part {
         part: &'f PartReference,
         kind: Kind,
-        /// Whether the part is measured after all operations.
+        /// Whether the part is measured after all operations, not as drawn.
         finished: bool,
     },
 }
@@ -95,7 +95,7 @@ pub(crate) enum Use<'f> {
 /// One step of a formula in postfix order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
-    /// Column of the step in the text that was read, from 1.
+    /// Column of the step in the text of the formula, from 1.
     pub column: usize,
     pub operation: Operation,
 }
@@ -105,9 +105,9 @@ pub(crate) struct Step {
 pub(crate) enum Operation {
     /// Pushes a number.
     Constant(Quantity),
-    /// Pushes a variable.
+    /// Pushes the value of a variable.
     Variable(VariableId),
-    /// Pushes a measurement.
+    /// Pushes the value of a measurement.
     Word(Box<str>),
     Negate,
     Not,
@@ -124,9 +124,9 @@ pub(crate) enum Operation {
     Length(PartReference),
     /// Pushes the length of a stretch after all operations, dart legs left out.
     Finished(PartReference),
-    /// Pushes the direction of a part from start to end, from +x counter-clockwise.
+    /// Pushes the direction from the start of a part to its end (rad), from +x counter-clockwise.
     Angle(PartReference),
-    /// Pushes the direction from one point to another.
+    /// Pushes the direction from one point to another (rad), from +x counter-clockwise.
     AngleBetween(PartReference, PartReference),
     /// Pushes a coordinate of a point: 0 is x, 1 is y.
     Coordinate(PartReference, usize),
@@ -169,12 +169,12 @@ impl Formula {
     /// variables or measurements; `length(front.armhole)`, `length(front.side..front.hem)`, `angle`,
     /// `distance`, `x`, `y` measure parts as drawn, `finished` an edge after all operations;
     /// `length('side seam')` measures a seam. `if(a < b, c, d)` chooses, `round(x, 5mm)` rounds. Names that
-    /// are not plain words stand in single quotes. `?47` is the part with that id, whatever its name is and even
-    /// if it is removed.
+    /// are not plain words stand in single quotes. `?47` is the part with the id 47, whatever its name is, even
+    /// if it was removed.
     ///
     /// # Errors
     /// The text is not a formula. An unknown name is no error: it is kept, and the formula has no value until
-    /// a part has that name.
+    /// a part gets that name.
     pub fn parse(text: &str, names: &Names) -> Result<Self, FormulaError> {
         parse::parse(text, names)
     }
@@ -201,7 +201,7 @@ impl Formula {
         &self.tokens
     }
 
-    /// Every part the formula names by its id.
+    /// All parts that the formula names by their ids.
     pub fn references(&self) -> Vec<PartId> {
         let mut found: Vec<PartId> = Vec::new();
         for token in self.tokens.iter() {
@@ -214,7 +214,7 @@ impl Formula {
         found
     }
 
-    /// Every value that the formula depends on.
+    /// All values that the formula depends on.
     pub(crate) fn uses(&self) -> Vec<Use<'_>> {
         let part = |part, kind| Use::Part {
             part,
@@ -255,8 +255,8 @@ impl Formula {
         uses
     }
 
-    /// Parts that names in the formula lead to now, although no part had these names when the formula
-    /// was read.
+    /// Parts that names in the formula now stand for, although no part had these names when the formula was
+    /// read.
     pub(crate) fn found_by_name(&self, names: &Names) -> Vec<PartId> {
         let found = self.uses().into_iter().flat_map(|used| match used {
             Use::Word(word) if !names.is_measurement(word) => {
@@ -272,7 +272,7 @@ impl Formula {
         found.collect()
     }
 
-    /// The formula with every name replaced through a map, as pasting does.
+    /// The formula with every name replaced by the result of `map`, for pasting it elsewhere.
     #[must_use]
     pub fn mapped(&self, map: &mut impl FnMut(&Token) -> Token) -> Self {
         let tokens: Arc<[Token]> = self.tokens.iter().map(&mut *map).collect();
@@ -324,7 +324,7 @@ impl Formula {
     }
 }
 
-/// A name as a formula writes it: in quotes unless it is a plain word.
+/// A name as it is written in formulas: in quotes unless it is a plain word.
 pub(crate) fn quoted(name: &str) -> String {
     let plain = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')

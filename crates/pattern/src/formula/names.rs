@@ -18,22 +18,22 @@ pub struct Names {
     pub(super) points: Book<SheetId, PointId>,
     pub(super) curves: Book<SheetId, CurveId>,
     pub(super) operations: Book<PanelId, OperationId>,
-    /// Ends of the first edge with each name in each panel.
+    /// For each panel and each name of an edge, the ends of the first edge with that name.
     pub(super) edges: BTreeMap<PanelId, BTreeMap<Box<str>, [PointId; 2]>>,
-    /// Name of the first edge with these ends in a panel.
+    /// For each panel and each pair of ends, the name of the first edge with these ends.
     pub(super) spanned: BTreeMap<(PanelId, [PointId; 2]), Box<str>>,
-    /// The sheet each panel is traced from.
+    /// For each panel, the sheet that it is traced from.
     pub(super) source: BTreeMap<PanelId, SheetId>,
-    /// The first panel traced from each sheet.
+    /// For each sheet, the first panel traced from it.
     pub(super) traced: BTreeMap<SheetId, PanelId>,
-    /// Measurements in the tables of sizes.
+    /// Names of measurements in the tables of sizes.
     pub(super) measured: BTreeSet<Box<str>>,
-    /// Whether parts are written as `@` and their ids, which no renaming changes.
+    /// Whether parts are written as `@` and their ids, so that renaming does not change the text.
     pub(super) by_id: bool,
 }
 
-/// Names of one kind of part, each within an owner. If several parts have the same name, it stands for
-/// the first.
+/// Names of one kind of part; each name belongs to an owner, such as a sheet. If several parts of an owner
+/// have the same name, the name stands for the first of them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Book<Owner, Id> {
     of: BTreeMap<Id, (Owner, Box<str>)>,
@@ -60,7 +60,7 @@ impl<Owner: Copy + Ord, Id: Copy + Ord> Book<Owner, Id> {
         self.named.get(&owner)?.get(name).copied()
     }
 
-    /// Owner and name of a part.
+    /// Owner and name of a part with this id.
     pub fn name(&self, id: Id) -> Option<(Owner, &str)> {
         self.of.get(&id).map(|(owner, name)| (*owner, &**name))
     }
@@ -72,7 +72,7 @@ impl<Owner: Copy + Ord, Id: Copy + Ord> Book<Owner, Id> {
 }
 
 impl Names {
-    /// The names of a document.
+    /// The names of all parts of a document.
     pub fn new(pattern: &Pattern) -> Self {
         let mut names = Self::default();
         for variable in &pattern.variables {
@@ -117,7 +117,8 @@ impl Names {
         }
     }
 
-    /// Names for journals: parts are written as `@` and their ids, which outlive names.
+    /// Names for journals: parts are written as `@` and their ids, which do not change when parts are
+    /// renamed.
     pub(crate) fn by_id() -> Self {
         Self {
             by_id: true,
@@ -125,7 +126,7 @@ impl Names {
         }
     }
 
-    /// The variable of that name.
+    /// The variable with this name.
     pub fn variable(&self, name: &str) -> Option<VariableId> {
         self.variables.id((), name)
     }
@@ -135,13 +136,13 @@ impl Names {
         self.variables.names(())
     }
 
-    /// Name of the sheet a point is on.
+    /// Name of the sheet that a point is on.
     pub(crate) fn sheet_of_point(&self, id: PointId) -> Option<&str> {
         let (sheet, _) = self.points.name(id)?;
         self.sheets.name(sheet).map(|(_, name)| name)
     }
 
-    /// Name of the sheet a curve is on.
+    /// Name of the sheet that a curve is on.
     pub(crate) fn sheet_of_curve(&self, id: CurveId) -> Option<&str> {
         let (sheet, _) = self.curves.name(id)?;
         self.sheets.name(sheet).map(|(_, name)| name)
@@ -152,12 +153,12 @@ impl Names {
         definition(name).is_some() || self.measured.contains(name)
     }
 
-    /// The part that a text names; none if there is no such part.
+    /// The part that a text names. `None`: no such part exists.
     pub(crate) fn part(&self, text: &str, kind: Kind) -> Option<PartReference> {
         self.part_of(&Written::of(text, kind)?, kind)
     }
 
-    /// The part for a parsed notation; none if there is no such part.
+    /// The part that a parsed notation names. `None`: no such part exists.
     pub(super) fn part_of(&self, written: &Written, kind: Kind) -> Option<PartReference> {
         match written {
             Written::Lost(id) if kind == Kind::Point => Some(PartReference::Point((*id).into())),
@@ -211,8 +212,8 @@ impl Names {
         }
     }
 
-    /// The sheet that an owner's name leads to: the sheet of the panel with this name, else the sheet with
-    /// this name.
+    /// The sheet that the name of an owner stands for: the sheet of the panel with this name, else the sheet
+    /// with this name.
     fn sheet(&self, owner: &Owner) -> Option<SheetId> {
         let panel = self.owning_panel(owner);
         let traced = panel.and_then(|panel| self.source.get(&panel).copied());
@@ -224,7 +225,7 @@ impl Names {
         })
     }
 
-    /// The edge of a panel, else the curve of a sheet.
+    /// The edge with this name in the owner's panel, else the curve with this name on the owner's sheet.
     fn edge_or_curve(&self, owner: &Owner, name: &str) -> Option<PartReference> {
         let panel = self.owning_panel(owner);
         let edge = panel.and_then(|panel| Some((panel, *self.edges.get(&panel)?.get(name)?)));
@@ -256,7 +257,7 @@ impl Names {
         }
     }
 
-    /// Reason why a text names no part, and advice, if possible with the most similar name.
+    /// Message that a text names no part, and advice; if possible with the most similar name.
     pub(crate) fn missing(&self, text: &str, kind: Kind) -> (String, String) {
         match Written::of(text, kind) {
             None => removed(text),

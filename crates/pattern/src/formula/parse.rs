@@ -36,7 +36,7 @@ const COMPARISONS: &[(&str, Comparison)] = &[
     ("=", Comparison::Equal),
 ];
 
-/// Bound of the length of a part's name in a formula (bytes): four names of 80 characters, and quotes.
+/// Bound of the text of one part in a formula (bytes): four names of 80 characters each, and quotes.
 const MAX_NAME_LENGTH: usize = 1500;
 
 struct Parser<'a> {
@@ -45,7 +45,7 @@ struct Parser<'a> {
     depth: usize,
     steps: Vec<Step>,
     tokens: Vec<Token>,
-    /// Start of the text that is not in a token yet.
+    /// Start of the text that no token contains yet.
     pending: usize,
 }
 
@@ -93,7 +93,7 @@ impl Parser<'_> {
         self.steps.push(Step { column, operation });
     }
 
-    /// Puts the pending text up to a position into a token.
+    /// Makes a token of the text between `pending` and `end`.
     fn flush(&mut self, end: usize) {
         if self.pending < end {
             let text = &self.cursor.text[self.pending..end];
@@ -102,7 +102,7 @@ impl Parser<'_> {
         self.pending = end;
     }
 
-    /// Makes the name from `start` to the current position a token of its own.
+    /// Makes a token of the name between `start` and the current position.
     fn name_token(&mut self, start: usize, token: Token) {
         self.flush(start);
         self.tokens.push(token);
@@ -256,7 +256,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Reads `?47`: a variable that was removed, or whose name belongs to another.
+    /// Reads `?47`: a variable that was removed, or whose name stands for another variable.
     fn lost(&mut self) -> Result<(), FormulaError> {
         let (column, start) = (self.cursor.column(), self.cursor.at);
         let variable = id(&mut self.cursor)?.into();
@@ -293,7 +293,7 @@ impl Parser<'_> {
             self.cursor.at = end;
             let (token, operation) = match self.names.variable(&name) {
                 Some(id) => (Token::Variable(id), Operation::Variable(id)),
-                // `pi` stays plain text, as a number does: it is no name of a part.
+                // `pi` stays part of the text, as numbers do: it names no part.
                 None if &*name == PI && !is_quoted => {
                     self.push(column, Operation::Constant(Quantity::plain(consts::PI)));
                     return Ok(());
@@ -359,7 +359,7 @@ impl Parser<'_> {
             .error_here("stands where a comma is missing", hint))
     }
 
-    /// Reads `if(condition, value, otherwise)`: only the chosen value is computed.
+    /// Reads `if(condition, value, otherwise)`: only the chosen value will be computed.
     fn condition(&mut self, column: usize) -> Result<(), FormulaError> {
         const HINT: &str = "write if(condition, value, otherwise)";
         self.enter()?;

@@ -5,7 +5,7 @@ use super::{Formula, FormulaError, Token};
 use crate::{Code, PartReference, VariableId};
 use toile_geometry::Vec2;
 
-/// An environment that gives words the plain values of a table.
+/// Environment in which words have plain values from a table, and no other names have values.
 struct Words<F>(F);
 
 impl<F: Fn(&str) -> Option<f64>> Environment for Words<F> {
@@ -54,10 +54,12 @@ impl Formula {
         })
     }
 
-    /// The value of the formula with plain numbers for its words, as in a table that is all in one unit.
+    /// The value of the formula with plain numbers as the values of its words, as in a table with a single
+    /// unit.
     ///
     /// # Errors
-    /// A word without a number, a part, a number with a unit of length, a result that is not finite.
+    /// A word has no number; the formula names a part or has a number with a unit of length; the result is
+    /// not finite.
     pub fn plain_value(&self, word: impl Fn(&str) -> Option<f64>) -> Result<f64, FormulaError> {
         match compute(self, &Words(word)) {
             Ok(Quantity {

@@ -6,8 +6,8 @@ use super::{Names, Token, quoted};
 use crate::{CornerName, Name, PanelId, PartReference, SheetId, VariableId};
 
 impl Names {
-    /// The text of a token with current names. Parsed again it gives the same token: a part that is gone, or
-    /// whose name leads to another part, is printed as `?` and its id.
+    /// The text of a token, with the current names of parts. If the text is parsed it gives the same token: a
+    /// part that was removed, or whose name stands for another part, is printed as `?` and its id.
     pub fn print(&self, token: &Token) -> String {
         match token {
             Token::Text(text) => text.to_string(),
@@ -29,7 +29,7 @@ impl Names {
         }
     }
 
-    /// The text of a part with current names.
+    /// The text for a part with its current names.
     pub fn print_part(&self, part: &PartReference) -> String {
         if self.by_id {
             return ids_of(part);
@@ -56,8 +56,8 @@ impl Names {
         written.to_string()
     }
 
-    /// Notation of a point or curve by its own name and the name of its sheet, or of the panel traced from
-    /// the sheet; none if all of these lead to another part.
+    /// Notation of a point or curve by its name and the name of its sheet, or of the panel traced from the
+    /// sheet. `None`: all of these notations stand for another part.
     fn in_sheet(&self, sheet: SheetId, name: &str, part: &PartReference) -> Option<Written> {
         let is_point = matches!(part, PartReference::Point(_));
         let kind = if is_point { Kind::Point } else { Kind::Stretch };

@@ -17,17 +17,17 @@ pub(crate) enum Kind {
     StretchOrSeam,
 }
 
-/// A name, or `?` with an id.
+/// A name of a part, or `?` and the id of a part.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Word {
     Name(Box<str>),
     Id(u32),
 }
 
-/// The owner of points, edges and curves.
+/// The panel or sheet that points, edges and curves in a formula belong to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Owner {
-    /// A panel and the sheet it is traced from; if there is no such panel, a sheet.
+    /// A panel and the sheet that it is traced from; if no panel has this name, a sheet.
     Panel(Word),
     /// `sheet front`: a sheet, even if a panel has the same name.
     Sheet(Word),
@@ -37,7 +37,7 @@ pub(crate) enum Owner {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Corner {
     Drawn(Word),
-    /// `'inner dart'.mouth.0`
+    /// Example: `'inner dart'.mouth.0`
     Made {
         by: Word,
         role: Role,
@@ -48,29 +48,29 @@ pub(crate) enum Corner {
 /// A part as written in a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Written {
-    /// `?47`: a point; as the argument of a length, a part that was removed and whose kind is not known.
+    /// `?47`: a point; as the argument of `length`, a part that was removed and whose kind is unknown.
     Lost(u32),
     /// `'side seam'`, or `seam ?9`.
     Seam(Word),
-    /// `curve ?12`
+    /// Example: `curve ?12`
     Curve(u32),
     /// `curve front.side`: a curve of a sheet, even if an edge has the same name.
     CurveOf(Word, Word),
-    /// `front.armhole`
+    /// Example: `front.armhole`
     Part(Owner, Word),
-    /// `front.underarm..front.tip`
+    /// Example: `front.underarm..front.tip`
     Stretch(Owner, [Corner; 2]),
 }
 
 impl Written {
-    /// Parses a text that is one part; none if it is no part of this kind.
+    /// Parses a text as one part. `None`: the text is no part of this kind.
     pub fn of(text: &str, kind: Kind) -> Option<Self> {
         let mut cursor = Cursor::new(text);
         let written = Self::read(&mut cursor, kind).ok()?;
         cursor.peek().is_none().then_some(written)
     }
 
-    /// Reads a part from a formula.
+    /// Reads a part at the cursor's position in a formula.
     pub fn read(cursor: &mut Cursor<'_>, kind: Kind) -> Result<Self, FormulaError> {
         cursor.skip_space();
         if kind != Kind::Point && cursor.take_prefix("curve") {
@@ -170,7 +170,7 @@ pub(super) fn id(cursor: &mut Cursor<'_>) -> Result<u32, FormulaError> {
     }
 }
 
-/// Reads the rest of a corner after its first word.
+/// Reads the rest of a corner, whose first word was read before.
 fn corner(cursor: &mut Cursor<'_>, first: Word) -> Result<Corner, FormulaError> {
     let rest = cursor.rest();
     if !rest.starts_with('.') || rest.starts_with("..") {

@@ -6,17 +6,18 @@ use std::collections::{BTreeMap, VecDeque};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Link {
     pub nodes: [usize; 2],
-    /// Whether the nodes must be of different kinds.
+    /// Whether the nodes must be of different kinds; else they must be of the same kind.
     pub unlike: bool,
 }
 
-/// The kinds of all nodes, as far as links decide them.
+/// The kinds of all nodes, relative to the root of their component.
 pub(crate) struct Colouring {
     /// Root of each node: the smallest node of its component.
     pub root: Vec<usize>,
-    /// Whether each node is of another kind than its root.
+    /// Whether each node is of another kind than the root of its component.
     pub unlike: Vec<bool>,
-    /// For each component that has no valid colouring, by its root: the links of a short ring that proves it.
+    /// For each component that has no valid colouring, by its root: the links of a short ring that contradict
+    /// each other.
     pub rings: BTreeMap<usize, Vec<usize>>,
 }
 
@@ -55,7 +56,7 @@ impl Colouring {
         colouring
     }
 
-    /// Keeps for each component the shortest ring through a violated link.
+    /// Finds for each component without a valid colouring the shortest ring through a violated link.
     fn find_rings(&mut self, links: &[Link], beside: &[Vec<usize>]) {
         for (index, link) in links.iter().enumerate() {
             let [a, b] = link.nodes;
@@ -72,7 +73,7 @@ impl Colouring {
     }
 }
 
-/// The other node of a link; the same node if the link joins it to itself.
+/// The node at the other end of a link; `node` itself if the link joins it to itself.
 fn across(link: Link, node: usize) -> usize {
     match link.nodes {
         [a, b] if a == node => b,
@@ -80,13 +81,14 @@ fn across(link: Link, node: usize) -> usize {
     }
 }
 
-/// The shortest path from one node to another that makes them unlike, or alike.
+/// The shortest path of links from one node to another that makes their kinds unlike, or alike if `unlike` is
+/// false.
 fn way(
     (from, to, unlike): (usize, usize, bool),
     links: &[Link],
     beside: &[Vec<usize>],
 ) -> Vec<usize> {
-    // Each node is visited at most twice: as one like the first node, and as one unlike it.
+    // Each node is visited at most twice: once as of the kind of `from`, and once as of the other kind.
     let mut reached_by: BTreeMap<(usize, bool), Option<usize>> = BTreeMap::new();
     reached_by.insert((from, false), None);
     let mut open = VecDeque::from([(from, false)]);

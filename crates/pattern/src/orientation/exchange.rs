@@ -1,9 +1,9 @@
 //! Chooses the spans of seams that take the other copy of a pair, or the other half of a folded panel, so
 //! that every piece shows its right side.
 //!
-//! A span on the other copy or half lies on the mirror image, so it runs the other way round its cloth: each
-//! exchange turns a seam that would show a wrong side into one that does not, and back. Spans that must be
-//! exchanged together, and the demand of a seam on its two sides, are links of one graph.
+//! The other copy or half is a mirror image, so a span on it runs the other way round its cloth. Each
+//! exchange therefore turns a seam that would show a wrong side into one that does not, or the reverse. Spans
+//! that must be exchanged together, and the demand of a seam on its two sides, are links of one graph.
 
 use super::colouring::{Colouring, Link};
 use super::meetings::Meeting;
@@ -11,10 +11,10 @@ use crate::evaluate::SpanValue;
 use crate::{EdgeName, PanelId};
 use std::collections::BTreeMap;
 
-/// Stretches that overlap by less than this share of their edge count as apart.
+/// Overlaps shorter than this share of an edge are ignored (1).
 const APART: f64 = 1e-9;
 
-/// The mirror image of a piece of cloth that a cutter may lay in its place.
+/// The mirror image of a piece of cloth that may be sewn instead of the piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Twin {
     /// The other copy of a mirrored pair.
@@ -24,7 +24,7 @@ pub(crate) enum Twin {
 }
 
 impl Twin {
-    /// A span moved to the other copy or half.
+    /// A span, moved to the other copy or half.
     pub fn of(self, span: &SpanValue) -> SpanValue {
         let mut twin = span.clone();
         match self {
@@ -35,16 +35,17 @@ impl Twin {
     }
 }
 
-/// A span of a seam.
+/// A span of a seam, and the twin that it may be exchanged with.
 pub(crate) struct SeamSpan<'a> {
-    /// Number of the seam that the span belongs to.
+    /// Index of the seam that the span belongs to.
     pub seam: usize,
     pub side: usize,
     pub value: &'a SpanValue,
     pub twin: Option<Twin>,
 }
 
-/// Spans that may be exchanged among each other: of one panel, between two copies or between two halves.
+/// A class of spans that may be exchanged with each other: all are on one panel, on the same two copies or
+/// two halves.
 type Class = (PanelId, Twin, u32, u8);
 
 impl SeamSpan<'_> {
@@ -56,7 +57,7 @@ impl SeamSpan<'_> {
         })
     }
 
-    /// Whether the span is on the second of the two copies or halves.
+    /// Whether the span is on the second of its two copies or halves.
     fn is_second(&self) -> bool {
         match self.twin {
             Some(Twin::Copy) => self.value.copy % 2 == 1,
@@ -65,7 +66,7 @@ impl SeamSpan<'_> {
         }
     }
 
-    /// The span moved to the other copy or half; unchanged if there is none.
+    /// The span moved to the other copy or half; unchanged if it has no twin.
     pub fn exchanged(&self) -> SpanValue {
         match self.twin {
             Some(twin) => twin.of(self.value),
@@ -74,19 +75,19 @@ impl SeamSpan<'_> {
     }
 }
 
-/// Decision about a span.
+/// Decision whether a span is exchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Taken {
-    /// Whether the span takes the other copy or half.
+    /// Whether the span is moved to the other copy or half.
     pub exchanged: bool,
-    /// Whether the exchange sets a seam right; otherwise two seams change places, and the sewn garment stays
-    /// the same.
+    /// Whether the exchange corrects a seam; otherwise two seams only change places, and the sewn garment
+    /// stays the same.
     pub is_needed: bool,
 }
 
-/// Chooses the spans to exchange so that every seam is right; none if that is impossible or not needed.
-/// `asked` are pairs of spans that lie opposite each other in a seam, each with whether they turn a
-/// piece over.
+/// Chooses the spans to exchange so that no seam shows a wrong side. No span is exchanged if that is
+/// impossible or not needed. `asked` are the pairs of spans that lie opposite each other in a seam, each with
+/// whether one of the two shows its wrong side.
 pub(crate) fn choose(spans: &[SeamSpan<'_>], asked: &[Meeting]) -> Vec<Taken> {
     let mut exchanged = vec![Taken::default(); spans.len()];
     if asked.iter().all(|meeting| !meeting.turns) {
@@ -134,10 +135,10 @@ fn alike(nodes: [usize; 2]) -> Link {
     }
 }
 
-/// Cost of a choice, compared in this order: number of exchanges, unless all of them change places with
-/// others; for each seam, in the order of the document, number of spans on second copies and halves; number
-/// of exchanged halves; for each span whether it is then on a second copy or half, so that the earliest spans
-/// are on first copies.
+/// Cost of a choice; earlier items decide first. They are: number of exchanges, or 0 if all of them are swaps
+/// of two spans; for each seam, in the order of the document, number of spans on second copies and halves;
+/// number of exchanged halves; for each span, whether it is then on a second copy or half, so that early
+/// spans are on first copies.
 type Cost = (usize, Vec<usize>, usize, Vec<bool>);
 
 fn cost(spans: &[SeamSpan<'_>], members: &[usize], (moved, swaps): (&[bool], bool)) -> Cost {
@@ -163,12 +164,12 @@ fn cost(spans: &[SeamSpan<'_>], members: &[usize], (moved, swaps): (&[bool], boo
     )
 }
 
-/// Constraints: spans that are exchanged together or not at all.
+/// Constraints: links between spans that must be exchanged together or not at all.
 struct Ties {
     links: Vec<[usize; 2]>,
     /// Whether each span may be exchanged.
     may_move: Vec<bool>,
-    /// Whether each span changes places with others if it is exchanged.
+    /// Whether each span, if it is exchanged, changes places with another span.
     swaps: Vec<bool>,
 }
 
@@ -188,13 +189,13 @@ impl Ties {
         for ((_, twin, ..), members) in &classes {
             let met = ties.tie_places(spans, members);
             for (&k, met) in members.iter().zip(met) {
-                // A half is exchanged only if another seam is on its stretch: the piece itself stays
+                // A half is exchanged only if another seam lies on its stretch, since the piece itself stays
                 // in place.
                 ties.may_move[k] = met || *twin == Twin::Copy;
             }
             ties.tie_chains(spans, members);
         }
-        // Spans of one chain move together: if one may not move, none may.
+        // Linked spans move together: if one of them may not move, none of them may.
         let links: Vec<Link> = ties.links.iter().map(|&nodes| alike(nodes)).collect();
         let groups = Colouring::new(spans.len(), &links).root;
         let held: Vec<usize> = (0..spans.len())
@@ -207,9 +208,9 @@ impl Ties {
         ties
     }
 
-    /// Ties spans on the same stretch of the two copies or halves: they change places with each other. Spans
-    /// on the same stretch of one copy are not tied: they were meant for both copies or halves. Returns for
-    /// each span whether another lies on its stretch of either copy or half.
+    /// Links spans that lie on the same stretch of the two copies or halves: they change places with each
+    /// other. Spans on the same stretch of one copy are not linked, as they were meant for both copies or
+    /// halves. Returns for each span whether another span lies on its stretch, on either copy or half.
     fn tie_places(&mut self, spans: &[SeamSpan<'_>], members: &[usize]) -> Vec<bool> {
         let mut met = vec![false; members.len()];
         let mut places: BTreeMap<EdgeName, Vec<(f64, f64, usize)>> = BTreeMap::new();
@@ -236,8 +237,8 @@ impl Ties {
         met
     }
 
-    /// Ties the spans of a panel within one side of a seam; and all spans of a copy whose twin is not sewn at
-    /// all: the twin takes its place as a whole.
+    /// Links the spans of a panel within one side of a seam. If only one copy of a pair is sewn, links all
+    /// spans on it: the other copy takes its place as a whole.
     fn tie_chains(&mut self, spans: &[SeamSpan<'_>], members: &[usize]) {
         let is_whole = members
             .windows(2)

@@ -2,16 +2,17 @@
 
 use crate::{Draft, DraftSpan, Piece, PieceEdge};
 
-/// Spans opposite each other along less than this share of the seam are so because of a difference of
-/// lengths, not by design.
+/// Share of a seam (1). Spans that lie opposite each other along less than this do so because the sides
+/// differ in length, not by design.
 const BESIDE: f64 = 0.02;
 
 /// Two spans that lie opposite each other in a seam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Meeting {
-    /// Numbers of the spans, of the first side and of the second.
+    /// Indices of the span of the first side and of the span of the second side.
     pub spans: [usize; 2],
-    /// Whether both run the same way round their cloth, so that one of them shows its wrong side.
+    /// Whether both spans run the same way round their cloth, so that one of the two pieces shows its wrong
+    /// side.
     pub turns: bool,
 }
 
@@ -25,7 +26,7 @@ pub(crate) struct SidePart {
 }
 
 impl SidePart {
-    /// The part that consists of these spans; none if they have no length.
+    /// The part that consists of these spans. `None`: the spans have no length.
     pub fn of(draft: &Draft, spans: &[DraftSpan]) -> Option<Self> {
         let mut part = Self {
             length: 0.0,
@@ -47,8 +48,8 @@ fn edges(piece: &Piece) -> impl Iterator<Item = &PieceEdge> {
     piece.outline.iter().chain(piece.holes.iter().flatten())
 }
 
-/// The parts of both sides that lie opposite each other, measured by shares from 0 to 1 of each side's
-/// length. The numbers are indices of the parts on their sides.
+/// The pairs of parts that lie opposite each other, when positions are shares from 0 to 1 of the length of
+/// each side. The numbers in the result are indices of parts on their sides.
 pub(crate) fn meetings(sides: [&[SidePart]; 2]) -> Vec<Meeting> {
     let shares = sides.map(|parts| {
         let total: f64 = parts.iter().map(|part| part.length).sum();

@@ -6,17 +6,19 @@ use super::words::{ring_words, turned_words};
 use crate::{Diagnostic, Draft, DraftSpan, SeamOrigin};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A pair of pieces joined by a seam: index of the seam in the draft, and the way in which it joins them.
+/// A pair of pieces joined by a seam: index of the seam in the draft, and how the seam turns the pieces.
 struct Joined {
     seam: usize,
     pieces: [usize; 2],
-    /// Whether one piece shows its wrong side if the other shows its right side.
+    /// Whether one of the pieces shows its wrong side when the other shows its right side.
     opposite: bool,
-    /// Whether right sides lie together during sewing, so that showing a wrong side is a mistake.
+    /// Whether the seam is sewn with right sides together, so that a piece showing its wrong side is a
+    /// mistake.
     is_fault: bool,
 }
 
-/// Diagnostics for pieces that show their wrong side, and for rings of pieces that have no valid sides.
+/// Diagnostics for pieces that show their wrong side, and for rings of pieces for which no choice of sides is
+/// valid.
 pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
     let joined = joined(draft);
     let mut found = Vec::new();
@@ -40,8 +42,8 @@ pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
         if as_laid.rings.contains_key(&root) {
             continue;
         }
-        // Seams that lay a wrong side outward on purpose do not count against a piece, unless its other seams
-        // contradict them.
+        // A seam that shows a wrong side on purpose is not counted as a fault of a piece, unless other seams
+        // contradict it.
         let colouring = match as_meant.rings.contains_key(&root) {
             true => &as_laid,
             false => &as_meant,
@@ -65,8 +67,8 @@ pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
     found
 }
 
-/// All pairs of pieces that meet along seams of the document. Seams of darts are left out: their legs always
-/// run against each other.
+/// All pairs of pieces that meet along seams of the document. Seams of darts are left out: the two legs of a
+/// dart always run in opposite directions.
 fn joined(draft: &Draft) -> Vec<Joined> {
     let mut all = Vec::new();
     for (index, seam) in draft.seams.iter().enumerate() {
@@ -88,7 +90,7 @@ fn joined(draft: &Draft) -> Vec<Joined> {
     all
 }
 
-/// The parts of a side, each on one piece and running one way round it.
+/// The parts of a side of a seam: each is on one piece and runs one way round it.
 fn parts(draft: &Draft, side: &[DraftSpan]) -> Vec<(usize, SidePart)> {
     let is_one =
         |a: &DraftSpan, b: &DraftSpan| a.piece == b.piece && (a.to > a.from) == (b.to > b.from);
@@ -105,8 +107,8 @@ fn links(joined: &[Joined], unlike: impl Fn(&Joined) -> bool) -> Vec<Link> {
     joined.iter().map(link).collect()
 }
 
-/// Whether these pieces are to be reported rather than the others: if they are fewer, else of less cloth,
-/// else later.
+/// Whether the pieces `some`, not the pieces `others`, are to be reported: whichever are fewer, else have
+/// less cloth, else come later.
 fn smaller(draft: &Draft, some: &[usize], others: &[usize]) -> bool {
     let cloth = |pieces: &[usize]| -> f64 {
         let edges = pieces.iter().flat_map(|&k| &draft.pieces[k].outline);

@@ -4,7 +4,7 @@ use super::exchange::Twin;
 use crate::{Code, Diagnostic, Draft, Place};
 use std::collections::BTreeSet;
 
-/// Message: the seams that take another copy or half of a panel than is written.
+/// Message that lists the seams which take another copy or half of a panel than the document gives.
 pub(crate) fn exchange_words<'n>(
     twin: Twin,
     panel: &str,
@@ -40,7 +40,7 @@ pub(super) fn turned_words(draft: &Draft, piece: usize, seams: BTreeSet<usize>) 
     )
 }
 
-/// Diagnostic for a ring of pieces that no choice of sides suits.
+/// Diagnostic for a ring of pieces for which no choice of sides is valid.
 pub(super) fn ring_words(
     draft: &Draft,
     pieces: &BTreeSet<usize>,
@@ -78,7 +78,7 @@ fn seams_named(names: &[String]) -> String {
     format!("{word} {}", listed(names))
 }
 
-/// A list of names in words, the last after "and".
+/// A list of names in words, with "and" before the last name.
 fn listed(names: &[String]) -> String {
     match names {
         [] => String::new(),

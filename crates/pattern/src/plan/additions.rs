@@ -10,7 +10,7 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// New points and curves of one sheet, while they are planned.
+/// New points and curves of one sheet, collected while they are planned.
 pub(super) struct Additions {
     /// The sheet with all additions so far.
     pub sheet: Sheet,
@@ -21,7 +21,7 @@ pub(super) struct Additions {
 }
 
 impl Additions {
-    /// No additions yet.
+    /// Starts without additions.
     pub fn new(pattern: &Pattern, id: SheetId) -> Result<Self, EditError> {
         Ok(Self {
             sheet: (**sheet(pattern, id)?).clone(),
@@ -30,7 +30,7 @@ impl Additions {
         })
     }
 
-    /// Adds a point; without a name it is called by the next free letter.
+    /// Adds a point. Without a name it gets the next free letter as its name.
     pub fn point(&mut self, name: Option<&str>, rule: PointRule) -> Result<PointId, EditError> {
         let name = match name {
             Some(name) => wished(name, |name| point_owner(&self.sheet, name))?,
@@ -56,7 +56,7 @@ impl Additions {
         Ok(id)
     }
 
-    /// Adds a curve; without a name it is called by the names of its ends.
+    /// Adds a curve. Without a name it gets the names of its ends as its name.
     pub fn curve(
         &mut self,
         name: Option<&str>,
@@ -88,7 +88,7 @@ impl Additions {
         Ok(id)
     }
 
-    /// A free name from the names of both ends if they are short; else a word and a number.
+    /// A free name for a curve: the names of both ends if they are short, else a word and a number.
     fn curve_name(&self, ends: [PointId; 2]) -> String {
         let name = |id| self.sheet.point(id).map_or("", |point| &*point.name);
         let both: String = ends.map(name).concat();

@@ -6,33 +6,33 @@ use super::transform::{Moved, move_points};
 use crate::{EditError, Evaluation, PointId};
 use toile_geometry::{Bounds2, Vec2};
 
-/// The sides or middles that are aligned.
+/// Sides or middles of parts that are aligned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
-    /// Left sides, with the leftmost.
+    /// Left sides, moved to the leftmost of them.
     Left,
-    /// Right sides, with the rightmost.
+    /// Right sides, moved to the rightmost of them.
     Right,
-    /// Upper sides, with the topmost.
+    /// Upper sides, moved to the topmost of them.
     Top,
-    /// Lower sides, with the bottommost.
+    /// Lower sides, moved to the bottommost of them.
     Bottom,
-    /// Middles on one vertical line, through the middle of all groups together.
+    /// Middles, moved to one vertical line through the middle of all groups together.
     Middle,
-    /// Middles on one horizontal line, through the middle of all groups together.
+    /// Middles, moved to one horizontal line through the middle of all groups together.
     Level,
 }
 
 /// A direction in which parts are distributed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// To the right.
+    /// From left to right.
     X,
-    /// Upward.
+    /// From bottom to top.
     Y,
 }
 
-/// Plans to align groups of points; each group moves as one.
+/// Plans to align groups of points. The points of a group are moved by the same displacement.
 ///
 /// # Errors
 /// There are fewer than two groups, or an empty one; a point is missing or cannot be drawn; no group
@@ -56,8 +56,8 @@ pub fn align(
     shifted(evaluation, groups, &shifts)
 }
 
-/// Plans to distribute groups of points evenly along an axis: the outermost stay, the middles of the others
-/// come to equal distances in their present order.
+/// Plans to distribute groups of points evenly along an axis. The outermost groups stay; the middles of the
+/// other groups are moved to equal distances, in their present order.
 ///
 /// # Errors
 /// There are fewer than three groups, or an empty one; a point is missing or cannot be drawn; no group

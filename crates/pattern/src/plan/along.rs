@@ -10,7 +10,7 @@ use crate::{
 };
 use toile_geometry::{Curve, Path, Vec2};
 
-/// Distances that differ by less than this count as the same (m).
+/// Largest difference between distances that count as equal (m).
 const SAME: f64 = 1e-9;
 
 /// An edge of a finished panel, from corner to corner.
@@ -27,7 +27,7 @@ pub struct FinishedEdge {
     parts: Vec<Part>,
 }
 
-/// One curve of a finished edge, with the stretch of the named edge that it comes from.
+/// One curve of a finished edge, and the stretch of a named edge that the curve is.
 #[derive(Clone, Debug, PartialEq)]
 struct Part {
     edge: EdgeName,
@@ -101,7 +101,7 @@ pub fn finished_edge(
 }
 
 impl FinishedEdge {
-    /// Distance along the edge from its first corner to the point of it nearest to `near` (m).
+    /// Distance from the first corner, along the edge, to the point of the edge nearest to `near` (m).
     pub fn nearest(&self, near: Vec2) -> f64 {
         let found = self.parts.iter().filter_map(|part| {
             let place = part.path.nearest(near)?;
@@ -112,30 +112,33 @@ impl FinishedEdge {
         found.map_or(0.0, |(_, along)| along)
     }
 
-    /// The curve at a distance from the first corner, and the distance along that curve (m).
+    /// The part of the edge at the distance `along` from the first corner, and the distance within that part
+    /// (m).
     fn part(&self, along: f64) -> Option<(&Part, f64)> {
         let part = self.parts.iter().rev().find(|part| part.start < along);
         let part = part.or(self.parts.first())?;
         Some((part, (along - part.start).clamp(0.0, part.path.length())))
     }
 
-    /// The named edge at a distance from the first corner (m), and the share of it.
+    /// The named edge at the distance `along` from the first corner (m), and the share of that named edge
+    /// there.
     pub fn share(&self, along: f64) -> Option<(EdgeName, f64)> {
         let (part, local) = self.part(along)?;
         let [from, to] = part.shares;
         Some((part.edge, from + (to - from) * local / part.path.length()))
     }
 
-    /// The position at a distance from the first corner (m).
+    /// The position at the distance `along` from the first corner (m).
     pub fn place(&self, along: f64) -> Option<Vec2> {
         let (part, along) = self.part(along)?;
         Some(part.path.point(part.path.at_length(along)?))
     }
 }
 
-/// The mark on a finished edge at a distance from one of its corners, 0 the first and 1 the second; from the
-/// second the distance is zero or negative. Marks are measured on the first stage that has their corner:
-/// lengths that later operations take out of the edge or put into it are added to the distance.
+/// The mark on a finished edge at a distance from one of its corners (m). `end` is 0 for the first corner and
+/// 1 for the second; distances from the second corner are zero or negative. A mark is measured on the first
+/// stage that has its corner, so lengths that later operations take out of the edge or insert are added to
+/// the distance.
 ///
 /// # Errors
 /// The distance has no value or is longer than the edge.
@@ -180,7 +183,8 @@ pub fn mark_along(
                 moved => added(distance, moved),
             },
         }),
-        // An operation made this part: the mark is a share of it, which survives edits.
+        // An operation made this part of the edge: the mark is a share of the part, so that it survives
+        // edits.
         None => {
             let panel = lookup::panel(evaluation.pattern(), edge.panel)?;
             let stage = evaluation.last_stage(panel).ok_or_else(beyond)?;
@@ -194,8 +198,8 @@ pub fn mark_along(
     }
 }
 
-/// Distance of a spot of a finished edge from a corner of it, on the first stage that has the corner (m),
-/// negative against the line; none if that stage does not have the spot.
+/// Distance from a corner of a finished edge to a spot on it, on the first stage that has the corner (m);
+/// negative against the line. `None`: that stage does not have the spot.
 fn on_first_stage(
     evaluation: &Evaluation,
     edge: &FinishedEdge,

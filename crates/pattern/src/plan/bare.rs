@@ -17,12 +17,13 @@ enum Kind {
     Unknown,
 }
 
-/// A value on the stack while a formula is examined.
+/// A value on the stack, as far as it is known without computing the formula.
 #[derive(Clone, Debug)]
 struct Value {
     kind: Kind,
-    /// Columns of the numbers without unit that the value consists of by sums and choices alone, or of the
-    /// only factor that has any; a zero needs no unit and has no column.
+    /// Columns of the numbers that get the unit if the value turns out to be a length or an angle. They are
+    /// the value's terms and choices, or those of the only factor that has such numbers; a zero needs no
+    /// unit. `None`: no unit can be given.
     bare: Option<Vec<usize>>,
     /// Whether the value contains `pi`.
     is_round: bool,
@@ -39,8 +40,8 @@ impl Value {
 }
 
 impl Value {
-    /// A product or quotient: a plain one takes its unit at the only factor that can have one. If both
-    /// factors can, the intended one is unknown, and neither is changed.
+    /// A product or quotient. A plain one takes a unit at its only factor that can have one. If both factors
+    /// can, it is unknown which one is meant, and neither gets a unit.
     fn product(first: Self, second: Self, kind: impl Fn([Kind; 2]) -> Kind) -> Self {
         let kind = kind([first.kind, second.kind]);
         Self {
@@ -54,8 +55,8 @@ impl Value {
     }
 }
 
-/// The text with units added to its numbers without unit that stand for lengths and angles; unchanged if
-/// there are none.
+/// The text with units added to the numbers without unit that stand for lengths and angles; unchanged if it
+/// has no such numbers.
 pub(super) fn with_units(
     evaluation: &Evaluation,
     text: &str,
@@ -83,7 +84,7 @@ pub(super) fn with_units(
     written.into_iter().collect()
 }
 
-/// The position after the digits of a number.
+/// The position after the digits of the number that begins at `start`.
 fn number_end(text: &[char], start: usize) -> usize {
     let mut end = start;
     while let Some(c) = text.get(end) {
@@ -103,15 +104,15 @@ fn number_end(text: &[char], start: usize) -> usize {
 
 struct Units<'e> {
     evaluation: &'e Evaluation,
-    /// Columns of the numbers that get a unit, with its kind.
+    /// Columns of the numbers that get a unit, each with the kind of unit.
     given: Vec<(usize, Kind)>,
 }
 
 impl Units<'_> {
-    /// Runs through the steps once, with quantities in place of values.
+    /// Runs through the steps of a formula once, with kinds of quantities on the stack instead of values.
     fn read(&mut self, formula: &Formula, want: Want) {
         let mut stack: Vec<Value> = Vec::new();
-        // Steps at which the two branches of a condition join.
+        // Indices of the steps at which the two branches of a condition join.
         let mut meets: Vec<usize> = Vec::new();
         for (k, step) in formula.steps().iter().enumerate() {
             self.meet(&mut stack, &mut meets, k);
@@ -148,14 +149,14 @@ impl Units<'_> {
                     let (second, first) = (pop(), pop());
                     Value::product(first, second, |kinds| match kinds {
                         [Kind::Plain, kind] | [kind, Kind::Plain] => kind,
-                        // The product of an angle and a length is the length of an arc.
+                        // The product of an angle (rad) and a length is a length: that of an arc.
                         [Kind::Angle, Kind::Length] | [Kind::Length, Kind::Angle] => Kind::Length,
                         _ => Kind::Unknown,
                     })
                 }
                 Operation::Divide => {
                     let (mut second, first) = (pop(), pop());
-                    // The unit goes to the dividend.
+                    // A quotient takes its unit at the dividend.
                     second.bare = None;
                     Value::product(first, second, |kinds| match kinds {
                         [kind, Kind::Plain] => kind,
@@ -222,8 +223,8 @@ impl Units<'_> {
         }
     }
 
-    /// Joins values that must be of one quantity: numbers without unit among them take the quantity of the
-    /// other value.
+    /// Joins two values that must be of one quantity: numbers without unit in either value take the quantity
+    /// of the other value.
     fn join(&mut self, [first, second]: [Value; 2]) -> Value {
         let bare_of = |value: &Value| value.bare.clone().unwrap_or_default();
         let mut give = |plain: &Value, kind: Kind| {
@@ -318,7 +319,7 @@ mod tests {
                 Want::Angle,
             ),
             ("waist + 1e1", "waist + 1e1cm", Want::Length),
-            // A variable may be of any quantity: only a number beside a length is one.
+            // A variable may be of any quantity: only a number that stands beside a length gets a unit.
             ("waist/4 + 2", "waist/4 + 2cm", Want::Any),
             // Factors, zeros and ratios get no unit.
             ("waist * 2", "waist * 2", Want::Length),
@@ -326,14 +327,14 @@ mod tests {
             ("waist / 72cm + 1", "waist / 72cm + 1", Want::Plain),
             ("waist + 1 5/8in", "waist + 1 5/8in", Want::Length),
             ("waist + 3 mm", "waist + 3 mm", Want::Length),
-            // One factor of a product is a length; in a quotient it is the dividend.
+            // In a product one factor is the length, in a quotient the dividend.
             ("40*cos(30deg)", "40cm*cos(30deg)", Want::Length),
             ("sin(30deg) * 40 / 3", "sin(30deg) * 40cm / 3", Want::Length),
             ("(1 + 2) * pi", "(1cm + 2cm) * pi", Want::Length),
             ("sqrt(2) * 5 - waist", "sqrt(2) * 5cm - waist", Want::Length),
             ("waist / (2*pi)", "waist / (2*pi)", Want::Length),
             ("3 * shoulder_incl", "3 * shoulder_incl", Want::Angle),
-            // With `pi` an angle is in radians, as in textbooks.
+            // An angle with `pi` is in radians, as in textbooks.
             ("pi / 6", "pi / 6", Want::Angle),
             (
                 "2 * pi / 3 + shoulder_incl",
@@ -348,7 +349,8 @@ mod tests {
             // The text that is shown may be typed again.
             assert_eq!(plan::read_number(&evaluation, &shown, want), Ok(number));
         }
-        // A sum with a plain variable or product is no length, and is refused on use.
+        // A sum with a plain variable or product is no length: it gets no unit and is refused where it is
+        // used.
         let number = plan::read_number(&evaluation, "waist + 2 * 3", Want::Length).unwrap();
         assert!(matches!(number, Number::Formula(_)));
         assert!(evaluation.number(&number, Want::Length).is_none());

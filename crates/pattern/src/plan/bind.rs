@@ -3,8 +3,8 @@
 use super::numbers::put_number;
 use crate::{Edit, Evaluation, Formula, Names, Number, PartReference, Token};
 
-/// Plans to bind names in formulas that had no part before and have one now. Formulas that also name removed
-/// parts keep waiting for them.
+/// Plans to replace names in formulas by ids, where a part with the name exists now but did not before.
+/// Formulas that also name removed parts are not changed.
 pub(super) fn bound(evaluation: &Evaluation) -> Vec<Edit> {
     let names = evaluation.names();
     let mut edits = Vec::new();
@@ -22,7 +22,7 @@ pub(super) fn bound(evaluation: &Evaluation) -> Vec<Edit> {
     edits
 }
 
-/// The number with its names bound; none if nothing changes.
+/// The number with its names replaced by ids. `None`: nothing changes.
 fn bound_number(number: &Number, names: &Names) -> Option<Number> {
     match number {
         Number::Value(_) => None,

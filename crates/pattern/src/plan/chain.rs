@@ -9,20 +9,20 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Path;
 
-/// A point this near to a curve is on it (m); evaluation uses the same limit.
+/// Largest distance from a curve at which a point counts as on it (m); equal to the limit in evaluation.
 pub(super) const ON_CURVE: f64 = 1e-6;
 
 /// The points or curves that a line of a panel is traced from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Chain<'a> {
-    /// Corners in order; between two of them the line follows the only curve that both lie on.
+    /// Corners in order. Between two corners the line follows the only curve that both lie on.
     Points(&'a [PointId]),
-    /// Whole curves in order, each sharing an end with the next.
+    /// Whole curves in order. Each shares an end with the next.
     Curves(&'a [CurveId]),
 }
 
 impl Chain<'_> {
-    /// The sheet of the first part.
+    /// The sheet of the first point or curve.
     pub(super) fn sheet<'p>(&self, pattern: &'p Pattern) -> Option<&'p Arc<Sheet>> {
         Some(match self {
             Self::Points(points) => pattern.point(*points.first()?)?.0,
@@ -31,12 +31,12 @@ impl Chain<'_> {
     }
 }
 
-/// A stretch of a curve from a point on it to another.
+/// A stretch of a curve between two points on it.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
     pub curve: CurveId,
     pub ends: [PointId; 2],
-    /// The curve from the first end to the second (m).
+    /// The path of the stretch, from its first end to its second (m).
     pub path: Arc<Path>,
     /// Whether the stretch runs against its curve.
     pub is_reversed: bool,
@@ -53,7 +53,7 @@ impl Stretch {
     }
 }
 
-/// Arc length from the start of a curve to a point (m); none if the point is not on the curve.
+/// Arc length from the start of a curve to a point (m). `None`: the point is not on the curve.
 pub(super) fn along(
     evaluation: &Evaluation,
     curve: &Curve,
@@ -82,7 +82,7 @@ pub(super) fn along(
     ((path.point(nearest) - at).norm() <= ON_CURVE).then_some(nearest.along)
 }
 
-/// The stretches of a chain, closed unless it is for an internal line.
+/// The stretches of a chain. The chain must be closed unless it is for an internal line.
 pub(super) fn stretches(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -254,13 +254,13 @@ fn apart(one: &Curve, other: &Curve) -> EditError {
     )
 }
 
-/// Twice the signed area that stretches sweep from the origin (m2).
+/// Twice the signed area that the stretches sweep, seen from the origin (m2).
 pub(super) fn swept(stretches: &[Stretch]) -> f64 {
     let curves = stretches.iter().flat_map(|s| s.path.curves());
     curves.map(|curve| curve.swept_area()).sum()
 }
 
-/// Stretches in the direction that a line of this kind has: an outline counter-clockwise, a hole clockwise.
+/// The stretches in the direction for this kind of line: outlines run counter-clockwise, holes clockwise.
 pub(super) fn wound(stretches: Vec<Stretch>, kind: LineKind) -> Result<Vec<Stretch>, EditError> {
     let area = swept(&stretches);
     let wanted = match kind {
@@ -283,8 +283,8 @@ pub(super) fn wound(stretches: Vec<Stretch>, kind: LineKind) -> Result<Vec<Stret
 /// Edges that follow stretches, each named after its curve.
 ///
 /// # Errors
-/// A stretch goes all round a closed curve against it: its two ends are the same point and could not tell
-/// the direction.
+/// A stretch runs all round a closed curve, against its direction: both ends are the same point, so the edge
+/// could not show its direction.
 pub(super) fn edges(
     sheet: &Sheet,
     stretches: &[Stretch],

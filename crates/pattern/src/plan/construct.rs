@@ -15,20 +15,20 @@ use toile_geometry::Vec2;
 pub enum CurveShape {
     /// A circular arc through a point (m).
     ArcThrough(Vec2),
-    /// A spline with handles at these positions (m); a point for each handle is added to the sheet, placed
-    /// relative to the end or knot of the handle so that it follows it.
+    /// A spline with handles at these positions (m). For each handle a point is added to the sheet; it is
+    /// placed relative to the spline's end or knot that it belongs to, and moves with it.
     Spline {
         /// Handles at the start and at the end (m).
         handles: [Vec2; 2],
-        /// Knots in order: the handle before each, the knot, the handle after it (m).
+        /// Knots in order; each is given by its handle before, the knot, and its handle after (m).
         knots: Vec<[Vec2; 3]>,
     },
-    /// By a rule that needs no new points: a line, an arc by its bulge, a mirror image, a copy.
+    /// A rule that needs no new points: a line, an arc by its bulge, a mirror image, a copy.
     Rule(CurveRule),
 }
 
 /// Plans to add an empty sheet with its origin at a position on the table (m); returns the sheet too. Without
-/// a name it is called `sheet`, `sheet 2`, ...
+/// a name the sheet is called `sheet`, `sheet 2`, ...
 ///
 /// # Errors
 /// The name is taken or not allowed; the position is not finite.
@@ -56,10 +56,10 @@ pub fn add_sheet(
 }
 
 /// Plans to move sheets on the table, each with its origin to a position (m). Panels traced from a sheet move
-/// with it.
+/// along.
 ///
 /// # Errors
-/// A sheet is missing, or lies on a panel and moves with that; a position is not finite.
+/// A sheet is missing, or lies on a panel, with which it moves; a position is not finite.
 pub fn move_sheets(
     evaluation: &Evaluation,
     places: &[(SheetId, [f64; 2])],
@@ -84,8 +84,8 @@ pub fn move_sheets(
     places.iter().map(put).collect()
 }
 
-/// Plans to add a point to a sheet; returns the point too. Without a name it is called by the next free
-/// letter: A, B, ... Z, A1, ...
+/// Plans to add a point to a sheet; returns the point too. Without a name the point gets the next free letter
+/// as its name: A, B, ... Z, A1, ...
 ///
 /// # Errors
 /// The name is taken or not allowed; the rule names parts of other sheets, or gives no position.
@@ -103,8 +103,8 @@ pub fn add_point(
     Ok((additions.edits, id))
 }
 
-/// Plans to add a curve between two points of a sheet; returns the curve too. Without a name it is called by
-/// its ends, as in `AB`.
+/// Plans to add a curve between two points of a sheet; returns the curve too. Without a name the curve is
+/// named after its ends, as in `AB`.
 ///
 /// # Errors
 /// The name is taken or not allowed; the ends are not on the sheet; the shape cannot be drawn.
@@ -141,10 +141,10 @@ pub fn add_curve(
     Ok((additions.edits, id))
 }
 
-/// Plans to bend a curve to a circular arc through a point (m); its ends stay.
+/// Plans to bend a curve to a circular arc through the point `through` (m); the ends of the curve stay.
 ///
 /// # Errors
-/// The curve is missing; the point is not finite, or no arc between the ends goes through it.
+/// The curve is missing; the point is not finite, or no arc between the ends passes through it.
 pub fn bend_curve(
     evaluation: &Evaluation,
     id: CurveId,
@@ -166,8 +166,9 @@ pub fn bend_curve(
     Ok(edits)
 }
 
-/// The bulge of the arc between two points through a third. The chords to the third point turn there by half
-/// the swept angle (inscribed angle theorem), and the bulge is the tangent of a quarter of the swept angle.
+/// The bulge of the arc between two points that passes through a third. At the third point the chords to it
+/// meet at a turn of half the swept angle (inscribed angle theorem); the bulge is the tangent of a quarter of
+/// the swept angle.
 fn bulge_through(
     evaluation: &Evaluation,
     ends: [PointId; 2],
@@ -189,7 +190,7 @@ fn bulge_through(
     ))
 }
 
-/// A spline rule; its handles and knots are added to the sheet.
+/// The rule for a spline. Points for its handles and knots are added to the sheet.
 fn spline(
     evaluation: &Evaluation,
     additions: &mut Additions,

@@ -6,11 +6,11 @@ use super::impossible;
 use super::lookup::{curve, path};
 use crate::{CurveId, Edit, EditError, Evaluation, PointId, PointRule, SheetId};
 
-/// Plans to add a point at every crossing of two curves of a sheet that has none yet; returns the points too,
-/// in the order of the first curve. They stay at the crossings when the curves move.
+/// Plans to add a point at every crossing of two curves of a sheet that has no point yet; returns the points
+/// too, in the order of the first curve. The points stay at the crossings when the curves move.
 ///
 /// # Errors
-/// A curve is missing or cannot be drawn; the curves do not cross, or have a point at every crossing.
+/// A curve is missing or cannot be drawn; the curves do not cross, or all crossings have a point already.
 pub fn mark_crossings(
     evaluation: &Evaluation,
     sheet: SheetId,

@@ -18,8 +18,9 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// Plans to divide an edge by a new corner at the place nearest to a point of the finished panel (m), or in
-/// its middle; returns the corner too. For a side of a split panel, the panel that was split gets the corner.
+/// Plans to divide an edge by a new corner: at the place nearest to the point `near` of the finished panel
+/// (m), or in the middle of the edge. Returns the corner too. On a side of a split panel, the panel that was
+/// split gets the corner.
 ///
 /// # Errors
 /// The edge is missing or cannot be drawn, or the place is one of its ends.
@@ -94,8 +95,8 @@ pub fn divide_edge(
     Ok((edits, corner))
 }
 
-/// Plans to remove a corner: the edges before and after it become one. If both follow one curve, the new edge
-/// follows it too; else it is a straight line.
+/// Plans to remove a corner: the edges before and after it become one edge. If both follow the same curve, so
+/// does the new edge; else the new edge is a straight line.
 ///
 /// # Errors
 /// The panel has no such corner, or its line would have too few corners left.
@@ -165,8 +166,8 @@ pub fn join_edges(
     Ok(edits)
 }
 
-/// Removals of the corner, if a division made it, and of the curves, where nothing uses them any more, the
-/// changed panel included.
+/// Edits that remove the corner, if it was made by dividing an edge, and the curves. Each is removed only if
+/// nothing uses it any longer; `panel` is the panel as changed.
 fn unused(
     evaluation: &Evaluation,
     panel: &Arc<Panel>,

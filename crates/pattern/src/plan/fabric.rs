@@ -6,25 +6,26 @@ use crate::{Edit, EditError, Entity, Evaluation, Fabric, FabricId, Pattern, is_p
 use std::sync::Arc;
 use toile_fabric::Component;
 
-/// A number of a fabric that the window changes: the width of its roll, or one of its material.
+/// A number of a fabric that the window can change: the width of its roll, or a figure of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FabricFigure {
     /// Width of the roll (m).
     Width,
-    /// A number of the material.
+    /// A component of a figure of the material.
     Material(Component),
 }
 
-/// Widths of a roll that can be given (m).
+/// Least and greatest width of a roll that are accepted (m).
 const WIDTHS: [f64; 2] = [0.05, 20.0];
 
 impl FabricFigure {
-    /// All of them, the width first.
+    /// All figures, the width first.
     pub fn all() -> impl Iterator<Item = Self> {
         std::iter::once(Self::Width).chain(Component::all().map(Self::Material))
     }
 
-    /// The value for a fabric (SI); nothing where a cloth can be without it and is.
+    /// Value of the figure for a fabric (SI). `None`: the figure is optional, and the fabric does not have
+    /// it.
     pub fn of(self, fabric: &Fabric) -> Option<f64> {
         match self {
             Self::Width => Some(fabric.width),
@@ -32,7 +33,7 @@ impl FabricFigure {
         }
     }
 
-    /// The label beside it.
+    /// Label of the figure.
     pub fn name(self) -> String {
         match self {
             Self::Width => "Width".to_owned(),
@@ -40,7 +41,7 @@ impl FabricFigure {
         }
     }
 
-    /// Explanation for somebody who sews.
+    /// Explanation of the figure for somebody who sews.
     pub fn about(self) -> &'static str {
         match self {
             Self::Width => "The roll from selvedge to selvedge, selvedges included",
@@ -48,7 +49,7 @@ impl FabricFigure {
         }
     }
 
-    /// The unit it is shown in, and the value of that in SI units.
+    /// Unit in which the figure is shown, and the value of that unit in SI units.
     pub fn unit(self) -> (&'static str, f64) {
         match self {
             Self::Width => ("m", 1.0),
@@ -58,7 +59,7 @@ impl FabricFigure {
         }
     }
 
-    /// Whether patterns usually say it: it is always written, or published for common cloths.
+    /// Whether fabrics usually give the figure: it is always written, or published for common cloths.
     pub fn is_usual(self) -> bool {
         match self {
             Self::Width => true,
@@ -68,7 +69,7 @@ impl FabricFigure {
         }
     }
 
-    /// Whether a cloth can be without it.
+    /// Whether a fabric may lack the figure.
     pub fn may_be_absent(self) -> bool {
         match self {
             Self::Width => false,
@@ -76,10 +77,10 @@ impl FabricFigure {
         }
     }
 
-    /// Whether a cloth can have a value (SI).
+    /// Whether the figure may have this value (SI).
     ///
     /// # Errors
-    /// It cannot: the values that there are, in the unit shown.
+    /// The value is not allowed. The message gives the allowed values, in the unit shown.
     pub fn check(self, value: Option<f64>) -> Result<(), String> {
         match self {
             Self::Width => {
@@ -106,10 +107,11 @@ fn fabric(pattern: &Pattern, id: FabricId) -> Result<&Arc<Fabric>, EditError> {
     found.ok_or_else(|| EditError::Missing(id.to_string()))
 }
 
-/// The edits that add a fabric; and the fabric. Where its name is taken it gets the next free one, as `denim 2`.
+/// Plans to add a fabric; returns the fabric too. If its name is taken it gets the next free one, such as
+/// `denim 2`.
 ///
 /// # Errors
-/// It can have no such name.
+/// The name is not allowed.
 pub fn add_fabric(
     evaluation: &Evaluation,
     new: Fabric,
@@ -126,15 +128,15 @@ pub fn add_fabric(
     Ok((vec![Edit::Put(Entity::Fabric(Arc::new(added)))], id))
 }
 
-/// The edits that change a fabric of the pattern, whose id it has.
+/// Plans to change the fabric of the pattern that has the id of `changed`.
 ///
 /// # Errors
-/// The fabric is not there; one of its figures is none that a cloth can have.
+/// The fabric is missing; one of its changed figures has a value that is not allowed.
 pub fn set_fabric(evaluation: &Evaluation, changed: Fabric) -> Result<Vec<Edit>, EditError> {
     let before = fabric(evaluation.pattern(), changed.id)?;
     for figure in FabricFigure::all() {
         let value = figure.of(&changed);
-        // Files may hold others: they are kept until they are changed.
+        // Files may hold values that are not allowed: they are accepted as long as they are not changed.
         if value == figure.of(before) {
             continue;
         }
@@ -151,7 +153,7 @@ pub fn set_fabric(evaluation: &Evaluation, changed: Fabric) -> Result<Vec<Edit>,
     Ok(vec![Edit::Put(Entity::Fabric(Arc::new(changed)))])
 }
 
-/// The edits that give a fabric another value of a figure (SI).
+/// Plans to set a figure of a fabric to another value (SI).
 ///
 /// # Errors
 /// As [`set_fabric`].
@@ -164,10 +166,10 @@ pub fn set_fabric_figure(
     set_fabric(evaluation, changed)
 }
 
-/// The edits that take a fabric away.
+/// Plans to remove a fabric.
 ///
 /// # Errors
-/// The fabric is not there, or panels or markers use it: they are named.
+/// The fabric is missing, or panels or markers use it; the message names them.
 pub fn remove_fabric(evaluation: &Evaluation, id: FabricId) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
     let gone = fabric(pattern, id)?;

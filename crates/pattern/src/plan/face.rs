@@ -10,18 +10,19 @@ use crate::{Curve, CurveId, EditError, Evaluation, PointId, Sheet};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Path, Polygon, Vec2};
 
-/// Distance of the polygons that stand for faces from their curves (m).
+/// Largest distance between a curve and the polygon that approximates it (m).
 const FLAT: f64 = 1e-5;
-/// Stretches at a node are sorted by their positions at this share of the shortest stretch.
+/// Share of the shortest stretch at a node (1): at this distance from the node the directions of stretches
+/// are compared.
 const NEAR_NODE: f64 = 1e-3;
 
-/// A face: its outline counter-clockwise, and the holes in it clockwise.
+/// A face: its outline, counter-clockwise, and its holes, clockwise.
 pub(super) struct Face {
     pub outline: Vec<Stretch>,
     pub holes: Vec<Vec<Stretch>>,
 }
 
-/// The smallest closed line of stretches round a point.
+/// The face that contains a point (m): the smallest closed line of stretches round it.
 pub(super) fn face(evaluation: &Evaluation, sheet: &Sheet, place: Vec2) -> Result<Face, EditError> {
     let mut graph = Graph::new(evaluation, sheet);
     graph.refuse_on_curve(sheet, place)?;
@@ -54,7 +55,7 @@ pub(super) fn face(evaluation: &Evaluation, sheet: &Sheet, place: Vec2) -> Resul
     })
 }
 
-/// A stretch between neighbouring nodes of a curve.
+/// A stretch of a curve between two neighbouring nodes on it.
 struct Link {
     curve: CurveId,
     nodes: [usize; 2],
@@ -63,23 +64,24 @@ struct Link {
     path: Path,
 }
 
-/// A walk round a face: half-links `2 link + direction` with the face on the left.
+/// A walk round a face. It is a list of half-links, numbered `2 link + direction`, with the face on their
+/// left.
 struct Cycle {
     halves: Vec<usize>,
-    /// Signed area (m2).
+    /// Signed area of the walk (m2).
     area: f64,
     polygon: Polygon,
-    /// A point on its boundary (m).
+    /// A point on the walk (m).
     inner: Vec2,
-    /// The connected part of the graph it belongs to.
+    /// Number of the connected part of the graph that the walk belongs to.
     component: usize,
 }
 
 struct Graph {
-    /// Points at which links meet, with their positions (m).
+    /// Points at which links meet, and their positions (m).
     nodes: Vec<(PointId, Vec2)>,
     links: Vec<Link>,
-    /// Links that bound a face.
+    /// Whether each link bounds a face.
     used: Vec<bool>,
 }
 
@@ -100,7 +102,7 @@ impl Graph {
         graph
     }
 
-    /// The node at a point; points at the same position are one node, which stands for the first of them.
+    /// The node at a point. Points at the same position share one node, named by the first of them.
     fn node(&mut self, evaluation: &Evaluation, point: PointId) -> Option<usize> {
         let at = evaluation.point(point)?;
         let known = self
@@ -113,7 +115,7 @@ impl Graph {
         }))
     }
 
-    /// Cuts a curve at the points on it.
+    /// Divides a curve into links at the points on it.
     fn cut(&mut self, evaluation: &Evaluation, sheet: &Sheet, curve: &Curve) {
         let Some(path) = evaluation.curve(curve.id) else {
             return;
@@ -166,7 +168,8 @@ impl Graph {
         }
     }
 
-    /// Refuses a face inside which curves cross without a point: the face may be smaller than it seems.
+    /// Refuses a face in which curves cross without a point at the crossing: the face may be smaller than it
+    /// looks.
     fn refuse_crossing(
         &self,
         evaluation: &Evaluation,
@@ -212,8 +215,8 @@ impl Graph {
         Ok(())
     }
 
-    /// Removes links that bound no face, with the same face on both sides, such as loose lines and bridges
-    /// between lines. Removing them joins no two faces, so that one pass is enough.
+    /// Removes links that have the same face on both sides, such as loose lines and bridges between lines. No
+    /// two faces are joined by this, so one pass is enough.
     fn prune(&mut self) {
         let mut face = vec![0_usize; 2 * self.links.len()];
         for (k, halves) in self.walk().iter().enumerate() {
@@ -262,7 +265,7 @@ impl Graph {
         stars
     }
 
-    /// The half-links of every face, in order.
+    /// The half-links round each face, in order.
     fn walk(&self) -> Vec<Vec<usize>> {
         let stars = self.stars();
         let next = |half: usize| {
@@ -335,7 +338,8 @@ impl Graph {
         }
     }
 
-    /// The stretches round a face; links of one curve are joined at a node where nothing else meets them.
+    /// The stretches round a face. Two links of one curve become one stretch unless other links meet them at
+    /// their node.
     fn walked(&self, evaluation: &Evaluation, sheet: &Sheet, cycle: &Cycle) -> Vec<Stretch> {
         let stars = self.stars();
         let ends = |curve: CurveId| sheet.curve(curve).map(|curve| curve.ends);

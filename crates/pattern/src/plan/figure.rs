@@ -26,18 +26,18 @@ pub enum FirstCorner {
 pub struct Figure {
     /// Corners, in order.
     pub points: Vec<PointId>,
-    /// Sides: each from its corner to the next.
+    /// Sides of the figure; side k runs from corner k to the next.
     pub curves: Vec<CurveId>,
-    /// The panel traced round the figure.
+    /// The panel traced round the figure, if one was asked for.
     pub panel: Option<PanelId>,
 }
 
-/// Plans to draw a rectangle from a corner to the right and upward, by `[width, height]` (m); returns its
-/// parts too. The other corners are placed relative to the first, so that formulas stay formulas. The sides
+/// Plans to draw a rectangle to the right of and above its first corner, with sides `[width, height]` (m);
+/// returns its parts too. The other corners are placed relative to the first, by the same formulas. The sides
 /// are called bottom, right, top and left.
 ///
 /// # Errors
-/// The sheet or the corner is missing; a side has no length or no value; the panel is refused.
+/// The sheet or the corner is missing; a side has no length or no value; the panel cannot be traced.
 pub fn add_rectangle(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -91,10 +91,10 @@ pub fn add_rectangle(
     finished(&drawn, additions, figure, panel)
 }
 
-/// Plans to draw a polygon through points of a sheet (m), each with a new point; returns its parts too.
+/// Plans to draw a polygon through positions on a sheet (m), with a new point at each; returns its parts too.
 ///
 /// # Errors
-/// There are fewer than three points, or two consecutive ones are the same; the panel is refused.
+/// There are fewer than three positions, or two consecutive ones are equal; the panel cannot be traced.
 pub fn add_polygon(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -129,7 +129,7 @@ pub fn add_polygon(
     finished(&drawn, additions, figure, panel)
 }
 
-/// The figure with a panel round it, if requested.
+/// Completes a figure, with a panel traced round it if one was asked for.
 fn finished(
     drawn: &Evaluation,
     additions: Additions,

@@ -9,26 +9,27 @@ pub struct FinishedLength {
     pub edge: EdgeName,
     /// Length with all darts of the edge closed (m).
     pub length: f64,
-    /// Length if none of its darts were trued and their mouths were just as wide (m).
+    /// Length that the edge would have without truing, with the mouths of its darts as wide as they are (m).
     pub untrued: f64,
     /// Width of the dart's mouth (m).
     pub mouth: f64,
 }
 
-/// The finished length of the edge that a dart opens in; none if the dart lies between two edges, or cannot
-/// be taken out.
+/// The finished length of the edge that a dart opens in, to show the effect of truing. `None`: the dart lies
+/// between two edges, or cannot be taken out.
 pub fn finished_length(
     evaluation: &Evaluation,
     panel: PanelId,
     dart: OperationId,
 ) -> Option<FinishedLength> {
     let pattern = evaluation.pattern();
-    // Operations that cut the outline apart drop the record of its edges before truing.
+    // Truing is recorded only up to the first operation that cuts the outline apart, so the last stage before
+    // it is taken.
     let owner = pattern.owner_of(panel, dart.into())?;
     let steps = owner.operations.iter().rev();
     let mut stages = steps.filter_map(|step| evaluation.stage(owner.id, Some(step.id)));
     let before = stages.find(|stage| !stage.untrued.is_empty());
-    // Both lengths are of one stage, so that no other change is mistaken for truing.
+    // Both lengths are taken on the same stage, so that they differ by truing alone.
     let stage = match before {
         Some(stage) => stage,
         None => evaluation.last_stage(pattern.panel(panel)?)?,

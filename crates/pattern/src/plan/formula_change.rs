@@ -11,31 +11,31 @@ use toile_geometry::Vec2;
 
 /// Most steps of the secant method for the value of a variable: one suffices for a linear formula.
 const STEPS: usize = 12;
-/// Tolerance of a number (m), (rad) or plain: well below the tolerance of a point, as several numbers place
-/// a point.
+/// Tolerance of a number (m), (rad) or plain. It is well below the tolerance of a point, since several
+/// numbers place a point.
 const NUMBER_TOLERANCE: f64 = 1e-12;
 /// Tolerance of the new position of a point (m).
 const POINT_TOLERANCE: f64 = 1e-9;
-/// Least slope of a number with respect to a variable for which the variable is solved for.
+/// Least slope of a number with respect to a variable: below it, the variable is not used to reach a value.
 const MIN_SLOPE: f64 = 1e-6;
 
-/// Treatment of a formula when the point that it places is moved.
+/// Change of a formula when the point that it places is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FormulaChange {
-    /// The formula stays, and an adjustment is added to it, in every size.
+    /// The formula stays; an adjustment is added to it, which counts in all sizes.
     #[default]
     Adjust,
-    /// The formula stays, and a variable that it names gets another value.
+    /// The formula stays; a variable that it names gets another value.
     Variable,
-    /// The formula stays in the other sizes; in the current size a value replaces it. A plain value stays in
-    /// the other sizes too.
+    /// The number gets a value of its own for the current size; the formula, or plain value, stays for all
+    /// other sizes.
     ThisSize,
-    /// A value replaces the formula in every size.
+    /// A value replaces the formula in all sizes.
     Detach,
 }
 
 impl FormulaChange {
-    /// The next choice, in a cycle.
+    /// The next choice; after the last comes the first.
     pub fn next(self) -> Self {
         match self {
             Self::Adjust => Self::Variable,
@@ -46,11 +46,11 @@ impl FormulaChange {
     }
 }
 
-/// Plans to move a point to `to` (m) in the current drawing, with the formulas that place it changed as
-/// chosen; see [`move_point`].
+/// Plans to move a point to `to` (m) as drawn now; the formulas that place the point change as `change` says.
+/// See [`move_point`].
 ///
 /// # Errors
-/// As for [`move_point`]; there is no size, or no variable of the formula changes the number.
+/// Any error of [`move_point`]; there is no current size, or no variable of the formula changes the number.
 pub fn move_point_by(
     evaluation: &Evaluation,
     point: PointId,
@@ -63,10 +63,10 @@ pub fn move_point_by(
     else {
         return Ok(edits);
     };
-    // A point on a line may be unable to reach `to` exactly.
+    // A point that is bound to a line may be unable to reach `to` exactly.
     let goal = place(&after(evaluation, &edits)?, point)?;
     let mut variables: Vec<(VariableId, Edit)> = Vec::new();
-    // The pattern with the variables changed so far: another number may name them too.
+    // The pattern with all variables changed so far: the next number may name them too.
     let mut work = evaluation.clone();
     for entry in numbers_of(evaluation, point.into()) {
         let want = entry.want;
@@ -90,7 +90,7 @@ pub fn move_point_by(
         let new = match change {
             FormulaChange::Adjust | FormulaChange::Detach => Number::Value(value),
             FormulaChange::ThisSize => in_this_size(evaluation, old, value)?,
-            // A plain value names no variable: the value itself is changed.
+            // A plain value names no variable, so the value itself is changed.
             FormulaChange::Variable if old.as_formula().is_none() => continue,
             FormulaChange::Variable => {
                 let taken: Vec<VariableId> = variables.iter().map(|found| found.0).collect();
@@ -112,7 +112,7 @@ pub fn move_point_by(
     }
 }
 
-/// The number with a value of its own in the current size.
+/// The number with another value in the current size.
 fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Number, EditError> {
     let size = evaluation.size().ok_or_else(|| {
         impossible(
@@ -131,8 +131,8 @@ fn in_this_size(evaluation: &Evaluation, old: Number, value: f64) -> Result<Numb
     Ok(Number::PerSize { usual, sizes })
 }
 
-/// Finds a variable of a number, not among those taken, with whose new value the number reaches a target;
-/// returns also the edit that sets it. By the secant method.
+/// Finds, by the secant method, a variable of a number and a value for it with which the number reaches its
+/// target; returns also the edit that sets it. Variables in `taken` are not changed.
 fn solve(
     evaluation: &Evaluation,
     (number, taken): (&Number, &[VariableId]),

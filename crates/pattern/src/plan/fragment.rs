@@ -11,25 +11,26 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Tag that marks data as a fragment.
+/// Tag field that marks data as a fragment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FragmentKind {
-    /// The only value.
+    /// The only value of the tag.
     #[default]
     Fragment,
 }
 
-/// Parts of a pattern, complete except for the parts outside that their formulas name.
+/// Parts of a pattern, copied to be pasted. Everything that the parts need is included, except other parts
+/// that only their formulas name.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Fragment {
     /// Tag that marks the data as a fragment.
     pub kind: FragmentKind,
     /// Name of the pattern that the parts were copied from.
     pub pattern: String,
-    /// Sheets with their copied points and curves.
+    /// Sheets, each with its copied points and curves.
     pub sheets: Vec<Arc<Sheet>>,
-    /// Sheets that were chosen themselves: they are pasted as sheets, not onto another sheet.
+    /// Sheets that were chosen as a whole: they are pasted as new sheets, not onto another sheet.
     #[serde(default)]
     pub whole_sheets: Vec<SheetId>,
     /// Panels.
@@ -40,35 +41,35 @@ pub struct Fragment {
     pub variables: Vec<Arc<Variable>>,
     /// Fabrics of the panels.
     pub fabrics: Vec<Arc<Fabric>>,
-    /// Parts that formulas name and that were not copied.
+    /// Parts that formulas of the fragment name but that are not in the fragment.
     pub outside: Vec<Outside>,
-    /// Values of the numbers that name such parts.
+    /// Values of the numbers whose formulas name parts that are not in the fragment.
     pub values: Vec<OutsideValue>,
 }
 
-/// A part that formulas name and that was not copied.
+/// A part that formulas of a fragment name but that is not in the fragment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outside {
     /// The part.
     pub part: PartId,
-    /// Description of the part; none if it was missing.
+    /// Description of the part. `None`: the part was missing when the fragment was copied.
     pub words: Option<String>,
-    /// Name of the part, if the name alone identifies it: for a size.
+    /// Name of the part, if parts of its kind are found again by name alone, as sizes are.
     pub name: Option<String>,
 }
 
-/// Value of a number that names parts outside the fragment.
+/// Value of a number whose formula names parts that are not in the fragment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutsideValue {
     /// Address of the number in the fragment.
     pub place: NumberAddress,
-    /// Value of the number (m), (rad) or plain; none if it had none.
+    /// Value of the number (m), (rad) or plain. `None`: it had no value.
     pub value: Option<f64>,
-    /// Power of length of the value: 0 plain, 1 a length.
+    /// Dimension of the value as a power of length: 0 plain, 1 a length.
     pub power: i8,
 }
 
-/// Every part that a number refers to.
+/// All parts that a number refers to.
 pub(super) fn references(number: &Number) -> Vec<PartId> {
     let speaks = Variable {
         number: number.clone(),
@@ -77,11 +78,11 @@ pub(super) fn references(number: &Number) -> Vec<PartId> {
     Entity::Variable(Arc::new(speaks)).references()
 }
 
-/// Copies parts: points and curves with everything that they are constructed from in their sheet, panels with
-/// the curves they follow, whole sheets, variables, and seams whose panels are all copied.
+/// Copies parts: points and curves, with all parts of their sheet that they are constructed from; panels,
+/// with the curves that they follow; whole sheets; variables; and seams whose panels are all copied.
 ///
 /// # Errors
-/// No part is chosen, a part is missing, or is copied only with its panel.
+/// No part is chosen, a part is missing, or a part can only be copied with its panel.
 pub fn copy(evaluation: &Evaluation, parts: &[PartId]) -> Result<Fragment, EditError> {
     let pattern = evaluation.pattern();
     let chosen = closure(pattern, parts)?;
@@ -138,7 +139,7 @@ fn whole_sheet(part: &PartId) -> Option<SheetId> {
     SheetId::try_from(*part).ok()
 }
 
-/// Gives points at marks of a panel that is not copied their current positions.
+/// Points placed at marks of a panel that is not copied get their current positions instead.
 fn lay_free(evaluation: &Evaluation, sheet: &mut Sheet) {
     for point in &mut sheet.points {
         if let (PointRule::Mark { .. }, Some(at)) = (&point.rule, evaluation.point(point.id)) {
@@ -160,7 +161,7 @@ pub(super) fn copy_all(evaluation: &Evaluation) -> Result<Fragment, EditError> {
     copy(evaluation, &parts)
 }
 
-/// The chosen parts, with the parts of their sheets that they depend on.
+/// The chosen parts, and the parts of their sheets that they depend on.
 fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, EditError> {
     let known: BTreeSet<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
     let mut chosen: BTreeSet<PartId> = BTreeSet::new();
@@ -191,14 +192,14 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
         if !chosen.insert(part) {
             continue;
         }
-        // A side brings the panel that it is cut from.
+        // With a side of a split panel, the panel that was split is copied.
         if let PartId::Panel(id) = part
             && let Some(Source::Side { of, .. }) = pattern.panel(id).map(|panel| panel.source)
             && known.contains(&of.into())
         {
             open.extend(seeds(pattern, of.into())?);
         }
-        // A panel also brings the sheets that it inserts.
+        // With a panel, the sheets that its operations insert are copied.
         if let PartId::Panel(id) = part {
             let steps = pattern
                 .panel(id)
@@ -215,7 +216,7 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
         let needs = entity.references().into_iter().filter(is_drawn);
         open.extend(needs.filter(|&other| sheets(other) == Some(sheet)));
     }
-    // A panel brings its sheet, even one that has lost all its points.
+    // With a panel, its sheet is copied, even if all points of the sheet were removed.
     let own = chosen
         .iter()
         .filter(|part| matches!(part, PartId::Panel(_)));
@@ -227,7 +228,7 @@ fn closure(pattern: &Pattern, parts: &[PartId]) -> Result<BTreeSet<PartId>, Edit
     Ok(chosen)
 }
 
-/// The parts to copy for a chosen part.
+/// The parts to copy if the part `part` is chosen.
 fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
     Ok(match part {
         PartId::Point(_)
@@ -242,7 +243,7 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
                 all.extend(sheet.points.iter().map(|point| PartId::from(point.id)));
                 all.extend(sheet.curves.iter().map(|curve| PartId::from(curve.id)));
             }
-            // Panels traced from a sheet are copied with it, as they are moved and removed with it.
+            // With a sheet, the panels traced from it are copied, as they are also moved and removed with it.
             let traced = pattern
                 .panels
                 .iter()
@@ -276,7 +277,7 @@ fn seeds(pattern: &Pattern, part: PartId) -> Result<Vec<PartId>, EditError> {
     })
 }
 
-/// Records the parts outside a fragment that its numbers name, and the values of these numbers.
+/// Records the parts outside a fragment that its numbers name, and the current values of these numbers.
 fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
     let pattern = evaluation.pattern();
     let places = pattern.parts();
@@ -326,7 +327,7 @@ fn look_outside(evaluation: &Evaluation, fragment: &mut Fragment) {
 }
 
 impl Fragment {
-    /// The fragment as a pattern of its own, in which every id counts as taken.
+    /// The fragment as a pattern; its id counter is such that no id in it is given again.
     pub(super) fn as_pattern(&self) -> Pattern {
         Pattern {
             sheets: self.sheets.clone(),
@@ -339,7 +340,7 @@ impl Fragment {
         }
     }
 
-    /// The entities that put the whole fragment into an empty pattern.
+    /// The entities that put the whole fragment into an empty pattern, in order.
     pub(super) fn entities(&self) -> Vec<Entity> {
         let mut all: Vec<Entity> = Vec::new();
         all.extend(self.fabrics.iter().cloned().map(Entity::Fabric));

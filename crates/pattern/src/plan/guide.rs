@@ -4,7 +4,8 @@ use super::lookup::finite;
 use crate::{Edit, EditError, Entity, Evaluation, Guide, GuideId, GuideRun};
 use std::sync::Arc;
 
-/// Plans to add a guide at a position on the table (m); returns the guide too.
+/// Plans to add a guide at a place on the table (m): a height or a distance to the right. Returns the guide
+/// too.
 ///
 /// # Errors
 /// The position is not finite.
@@ -18,7 +19,7 @@ pub fn add_guide(
     Ok((vec![put(Guide { id, runs, at })?], id))
 }
 
-/// Plans to move a guide to another position on the table (m).
+/// Plans to move a guide to another place on the table (m).
 ///
 /// # Errors
 /// The guide is missing, or the position is not finite.

@@ -35,7 +35,7 @@ pub(super) fn panel(pattern: &Pattern, id: PanelId) -> Result<&Arc<Panel>, EditE
     pattern.panel(id).ok_or_else(|| missing(&id))
 }
 
-/// The sheet on which a panel's own lines are drawn.
+/// The sheet that a panel's own lines are drawn on.
 pub(super) fn drawn_on<'p>(
     pattern: &'p Pattern,
     panel: &Panel,
@@ -82,7 +82,7 @@ pub(super) fn path(evaluation: &Evaluation, id: CurveId) -> Result<&Arc<Path>, E
     })
 }
 
-/// Refuses positions that are not finite; `what` names them.
+/// Refuses positions that are not finite; `what` names the positions in the error.
 pub(super) fn finite(what: &str, places: &[Vec2]) -> Result<(), EditError> {
     match places.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
         true => Ok(()),
@@ -90,10 +90,10 @@ pub(super) fn finite(what: &str, places: &[Vec2]) -> Result<(), EditError> {
     }
 }
 
-/// The evaluation after edits. The given evaluation stays unchanged.
+/// The evaluation of the pattern after edits, to check their effect. The given evaluation is not changed.
 ///
 /// # Errors
-/// The document does not take the edits.
+/// The pattern does not accept the edits.
 pub(super) fn after(evaluation: &Evaluation, edits: &[Edit]) -> Result<Evaluation, EditError> {
     let mut pattern = evaluation.pattern().clone();
     pattern.apply(edits)?;
@@ -102,8 +102,8 @@ pub(super) fn after(evaluation: &Evaluation, edits: &[Edit]) -> Result<Evaluatio
     Ok(after)
 }
 
-/// Refuses edits that give one of these places a fault that it does not have now, with the message of
-/// that fault.
+/// Refuses edits if one of these diagnostic places has a fault after them that it did not have before; the
+/// error has the message of that fault.
 pub(super) fn refuse_faults(
     before: &Evaluation,
     after: &Evaluation,

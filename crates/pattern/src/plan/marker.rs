@@ -11,8 +11,8 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// Plans to add a marker of a fabric for one garment, of the size that the pattern is drafted for or of
-/// the wearer's measurements; returns the marker too. Without a name it is called "marker", the second
+/// Plans to add a marker on a fabric for one garment: in the size that the pattern is drafted for, or for the
+/// wearer's measurements. Returns the marker too. Without a name the marker is called "marker", the next
 /// "marker 2".
 ///
 /// # Errors
@@ -58,8 +58,8 @@ pub fn remove_marker(evaluation: &Evaluation, id: MarkerId) -> Result<Vec<Edit>,
     Ok(vec![Edit::Remove(id.into())])
 }
 
-/// Plans to give a marker another order. Pieces that are not cut any more keep their placements in case they
-/// are ordered again.
+/// Plans to give a marker another order. Pieces that are no longer ordered keep their placements, in case
+/// they are ordered again.
 ///
 /// # Errors
 /// The marker is missing; a size is ordered twice or with quantity 0.
@@ -72,8 +72,8 @@ pub fn set_marker_order(
     put(Marker { order, ..marker })
 }
 
-/// Plans to lay a marker on another fabric, and sets whether it stays on it if the garment is cut from
-/// another. Pieces keep their positions.
+/// Plans to lay a marker on another fabric, and sets whether the marker keeps this fabric if the garment is
+/// cut from another. Pieces keep their positions.
 ///
 /// # Errors
 /// The marker is missing.
@@ -93,7 +93,7 @@ pub fn set_marker_fabric(
 /// Plans to change the cloth settings of a marker. Pieces keep their positions.
 ///
 /// # Errors
-/// The marker is missing; no fabric can be laid with one of the settings.
+/// The marker is missing; one of the settings is not allowed.
 pub fn set_marker_cloth(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -103,8 +103,8 @@ pub fn set_marker_cloth(
     put(Marker { cloth, ..marker })
 }
 
-/// Plans to remove one of a marker's rolls, counted from 0. Pieces on it wait to be laid; if it was the only
-/// roll, pieces stay where they are, on as much fabric as needed.
+/// Plans to remove one of a marker's rolls, counted from 0. Pieces on this roll lose their placements; but if
+/// it was the only roll, pieces stay where they are, on as much fabric as needed.
 ///
 /// # Errors
 /// The marker or the roll is missing.
@@ -130,11 +130,11 @@ pub fn remove_marker_roll(
     put(marker)
 }
 
-/// Plans to give a marker other rules for its pieces.
+/// Plans to give a marker other rules for laying its pieces.
 ///
 /// # Errors
-/// The marker is missing; no piece can be laid with one of the rules; there are two rules for the
-/// same pieces.
+/// The marker is missing; a value in one of the rules is not allowed; there are two rules for the same
+/// pieces.
 pub fn set_marker_rules(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -144,7 +144,7 @@ pub fn set_marker_rules(
     put(Marker { rules, ..marker })
 }
 
-/// Plans to give a marker other sets of marks that lie on the same place of the print.
+/// Plans to give a marker other sets of marks that must lie on the same place of the print.
 ///
 /// # Errors
 /// The marker is missing; a set has fewer than two marks.
@@ -157,9 +157,9 @@ pub fn set_matched_marks(
     put(Marker { matched, ..marker })
 }
 
-/// Plans to lay all pieces of a marker anew, as a search found it. Locked pieces, and pieces that the order
-/// does not cut or whose panel is gone, keep their placements; other pieces without a new placement wait to
-/// be laid.
+/// Plans to lay all pieces of a marker anew, as a search has placed them. Locked pieces, pieces that are not
+/// ordered, and pieces whose panel was removed keep their placements; other pieces without a new placement
+/// lose theirs.
 ///
 /// # Errors
 /// The marker is missing; a piece is laid twice or at a position that is not finite; a locked piece
@@ -189,11 +189,11 @@ pub fn place_marker(
     put(marker)
 }
 
-/// Plans to lay some pieces of a marker: waiting pieces, and pieces that lie elsewhere.
+/// Plans to lay some pieces of a marker: pieces without a placement, and pieces that lie elsewhere.
 ///
 /// # Errors
-/// The marker is missing; a piece is laid twice or at a position that is not finite, or is locked where
-/// it lies.
+/// The marker is missing; a piece is laid twice, is locked at its present place, or gets a position that is
+/// not finite.
 pub fn place_pieces(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -211,10 +211,10 @@ pub fn place_pieces(
     put(marker)
 }
 
-/// Plans to take pieces off a marker: they wait to be laid.
+/// Plans to take pieces off a marker: they lose their placements.
 ///
 /// # Errors
-/// The marker is missing; a piece does not lie on it or is locked.
+/// The marker is missing; a piece does not lie on the marker, or is locked.
 pub fn take_off_pieces(
     evaluation: &Evaluation,
     id: MarkerId,
@@ -226,10 +226,10 @@ pub fn take_off_pieces(
     put(marker)
 }
 
-/// Plans to move pieces of a marker (m).
+/// Plans to move pieces of a marker by a displacement (m).
 ///
 /// # Errors
-/// The marker is missing; a piece does not lie on it or is locked; the displacement is not finite.
+/// The marker is missing; a piece does not lie on the marker, or is locked; the displacement is not finite.
 pub fn move_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -240,10 +240,11 @@ pub fn move_pieces(
     })?)
 }
 
-/// Plans to turn pieces of a marker together about a centre, counter-clockwise (rad).
+/// Plans to turn pieces of a marker together about the point `centre` (m) by an angle, counter-clockwise
+/// (rad).
 ///
 /// # Errors
-/// The marker is missing; a piece does not lie on it or is locked; a number is not finite.
+/// The marker is missing; a piece does not lie on the marker, or is locked; a number is not finite.
 pub fn turn_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -257,10 +258,11 @@ pub fn turn_pieces(
     })?)
 }
 
-/// Plans to turn pieces of a marker over together, about a line along the warp (m).
+/// Plans to turn pieces of a marker over together, by mirroring them in a line along the warp at y = `line`
+/// (m).
 ///
 /// # Errors
-/// The marker is missing; a piece does not lie on it or is locked; the line is not finite.
+/// The marker is missing; a piece does not lie on the marker, or is locked; the line is not finite.
 pub fn flip_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -273,10 +275,10 @@ pub fn flip_pieces(
     })?)
 }
 
-/// Plans to lock pieces of a marker where they lie, or to unlock them.
+/// Plans to lock pieces of a marker at their places, or to unlock them.
 ///
 /// # Errors
-/// The marker is missing; a piece does not lie on it.
+/// The marker is missing; a piece does not lie on the marker.
 pub fn lock_pieces(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -295,7 +297,7 @@ fn found(evaluation: &Evaluation, id: MarkerId) -> Result<&Marker, EditError> {
     Ok(marker)
 }
 
-/// The edit that puts a marker, refused if the marker has a fault.
+/// The edit that puts a marker into the pattern; refused if the marker has a fault.
 fn put(marker: Marker) -> Result<Vec<Edit>, EditError> {
     if let Some(fault) = marker.fault() {
         let what = format!("marker {:?}: {}", marker.name, fault.message);
@@ -304,7 +306,7 @@ fn put(marker: Marker) -> Result<Vec<Edit>, EditError> {
     Ok(vec![Edit::Put(Entity::Marker(Arc::new(marker)))])
 }
 
-/// The marker with these pieces changed; refused if one of them is locked.
+/// The edit that changes the placements of these pieces; refused if one of the pieces is locked.
 fn changed(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -350,12 +352,12 @@ fn locked(evaluation: &Evaluation, piece: OrderedPiece) -> EditError {
     )
 }
 
-/// Description of a piece.
+/// Description of a piece, for messages.
 fn words(evaluation: &Evaluation, piece: OrderedPiece) -> String {
     evaluation.pattern().piece_words(piece)
 }
 
-/// The same angle above -PI and up to PI (rad); an angle in this range is returned unchanged.
+/// The equal angle above -PI and up to PI (rad); an angle in this range is returned unchanged.
 fn principal(angle: f64) -> f64 {
     match angle {
         angle if angle > -PI && angle <= PI => angle,

@@ -57,11 +57,11 @@ pub fn nearest_mark(
     })
 }
 
-/// Plans to add a point at a mark to the panel's sheet, unless there is a corner at the mark; returns the
-/// point too. It stays at the mark when the panel changes.
+/// Plans to add a point at a mark to the panel's sheet, unless the mark is at a drawn corner; returns the
+/// point too. The point stays at the mark when the panel changes.
 ///
 /// # Errors
-/// The panel is missing; operations moved the place away from where it was drawn, or made it.
+/// The panel is missing; operations moved the place away from its drawn position, or made it.
 pub(super) fn point_at_mark(
     evaluation: &Evaluation,
     panel: PanelId,

@@ -11,23 +11,24 @@ use crate::{
 };
 use toile_geometry::Vec2;
 
-/// Least share of a side's direction along the grain; a side below it runs across the grain.
+/// Least component of a side's direction along the grain (1): a side with a smaller one counts as running
+/// across the grain.
 const STEEP: f64 = 0.5;
 
-/// A place opposite another on a seam.
+/// A place on an edge that lies opposite another place when their seam is sewn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opposite {
     /// The panel.
     pub panel: PanelId,
     /// The edge.
     pub edge: EdgeId,
-    /// Share of the edge's length, from its start.
+    /// Share of the edge's length, from the start of the edge (1).
     pub share: f64,
 }
 
-/// The places opposite one place of an edge, one for each seam there: at the same share of the other side's
-/// length, so that ease is spread evenly. A place that is opposite in several seams, such as those of both
-/// halves of a folded panel, is returned once.
+/// The places that lie opposite a place of an edge, one for each seam there. Each is at the same share of the
+/// length of its side, so that ease is spread evenly. A place that lies opposite in several seams, such as
+/// those of both halves of a folded panel, is returned once.
 pub fn opposites(evaluation: &Evaluation, edge: EdgeId, share: f64) -> Vec<Opposite> {
     let mut found: Vec<Opposite> = Vec::new();
     for seam in &evaluation.pattern().seams {
@@ -55,7 +56,7 @@ pub fn opposites(evaluation: &Evaluation, edge: EdgeId, share: f64) -> Vec<Oppos
     found
 }
 
-/// The drawn edge of a name and its length, mouths of darts included (m).
+/// The drawn edge with this name, and its length with the mouths of darts (m). `None`: the edge is not drawn.
 fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f64)> {
     let Name::Drawn(edge) = name else {
         return None;
@@ -63,7 +64,7 @@ fn edge_length(evaluation: &Evaluation, name: Name<EdgeId>) -> Option<(EdgeId, f
     Some((edge, evaluation.edge(edge)?.length()))
 }
 
-/// Distance along a side to a share of one of its edges (m).
+/// Distance from the start of a side of a seam to a place on one of its edges (m).
 fn reached(
     evaluation: &Evaluation,
     side: &[SpanValue],
@@ -81,7 +82,7 @@ fn reached(
     None
 }
 
-/// The place at a distance along a side (m).
+/// The place at a distance from the start of a side of a seam (m).
 fn walked(evaluation: &Evaluation, side: &[SpanValue], way: f64) -> Option<Opposite> {
     let mut left = way;
     let mut last = None;
@@ -108,14 +109,14 @@ fn walked(evaluation: &Evaluation, side: &[SpanValue], way: f64) -> Option<Oppos
     last
 }
 
-/// A notch and its panel.
+/// A notch, by its panel and its id.
 pub type PanelNotch = (PanelId, NotchId);
 
-/// Plans to add a notch at a mark of a panel, and one opposite it on each seam there; returns the
+/// Plans to add a notch at a mark of a panel, and a notch opposite on each seam there; returns all of these
 /// notches too.
 ///
 /// # Errors
-/// The mark is a corner, or the edge is not sewn there.
+/// The mark is a corner, or no seam sews the edge there.
 pub fn add_matched_notches(
     evaluation: &Evaluation,
     (panel, near): (PanelId, NearMark),
@@ -168,8 +169,8 @@ fn located(
     found.ok_or_else(|| EditError::Missing(place.edge.to_string()))
 }
 
-/// The same edge on the other side of the wearer: on the mirrored half of a folded panel, or on the other
-/// copy of a mirrored pair. None for other panels.
+/// The edge on the other side of the wearer: on the mirrored half of a folded panel, or on the other copy of
+/// a mirrored pair. `None`: the panel is neither folded nor a pair.
 pub fn twin(pattern: &Pattern, edge: SewnEdge) -> Option<SewnEdge> {
     let panel = pattern.panel(edge.panel)?;
     match is_folded(panel) {
@@ -185,8 +186,8 @@ pub fn twin(pattern: &Pattern, edge: SewnEdge) -> Option<SewnEdge> {
     }
 }
 
-/// Whether a seam sews an upper end of one side to a lower end of the other, by the grain of their panels as
-/// drawn. Sides that run across the grain, and panels that cannot be drawn, give no answer: false.
+/// Whether a seam sews the upper end of one side to the lower end of the other, judged by the grain of their
+/// panels as drawn. `false` if a side runs across the grain or a panel cannot be drawn.
 pub fn is_upside_down(evaluation: &Evaluation, seam: SeamId) -> bool {
     let Some(seam) = evaluation.pattern().seam(seam) else {
         return false;
@@ -196,8 +197,8 @@ pub fn is_upside_down(evaluation: &Evaluation, seam: SeamId) -> bool {
         .is_some_and(|(one, two)| one * two < 0.0 && one.abs().min(two.abs()) > STEEP)
 }
 
-/// Whether a seam runs the same way round both pieces, seen from their right sides, so that one of them would
-/// show its wrong side.
+/// Whether a seam runs in the same direction round both pieces, seen from their right sides, so that one of
+/// the pieces would show its wrong side.
 pub fn turns_over(evaluation: &Evaluation, seam: SeamId) -> bool {
     let pattern = evaluation.pattern();
     let Some(seam) = pattern.seam(seam).filter(|seam| seam.right_sides_together) else {
@@ -213,8 +214,8 @@ pub fn turns_over(evaluation: &Evaluation, seam: SeamId) -> bool {
     one.is_some() && one == two
 }
 
-/// Component along the grain of the unit direction from the start to the end of a side: 1 straight up, -1
-/// straight down.
+/// Component along the grain of the unit vector from the start to the end of a side: 1 if the side leads
+/// straight up, -1 if straight down.
 fn rise(evaluation: &Evaluation, side: &[Span]) -> Option<f64> {
     let (first, last) = (side.first()?, side.last()?);
     let place = |mark: &Mark| match mark {

@@ -110,7 +110,7 @@ pub use typed::{number_shown, number_text, read_number};
 
 use crate::EditError;
 
-/// An error with the fault and the advice.
+/// An error for a request that cannot be done: description of the fault, and advice.
 fn impossible(message: impl Into<String>, hint: impl Into<String>) -> EditError {
     EditError::Impossible {
         message: message.into(),

@@ -11,11 +11,11 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
-/// Plans to move a point to `to` (m) in the current drawing.
+/// Plans to move a point to `to` (m) as drawn now.
 ///
-/// A value is set; a formula keeps its text and gets an adjustment. A point constructed from others keeps
-/// its construction with new numbers, so that a point on a curve or a line moves to the place on it nearest
-/// to `to`.
+/// A number that is a value is set; a formula keeps its text and gets an adjustment. A point constructed from
+/// others keeps its construction and gets other numbers in it, so a point on a curve or a line moves along it
+/// to the place nearest to `to`.
 ///
 /// # Errors
 /// The point is missing, cannot be drawn, or is determined by other points alone.
@@ -54,8 +54,8 @@ fn direction(evaluation: &Evaluation, [base, tip]: [PointId; 2]) -> Result<Vec2,
     ))
 }
 
-/// The rule with which a point of a sheet, now at `now`, comes to `to` (m), or as near to it as the
-/// rule allows.
+/// The rule with which a point of a sheet moves from its position `now` to `to` (m), or as near to `to` as
+/// the kind of rule allows.
 pub(super) fn moved(
     evaluation: &Evaluation,
     (sheet, old): (&Sheet, &PointRule),
@@ -156,8 +156,8 @@ pub(super) fn moved(
     })
 }
 
-/// A mark of the stage that a sheet lies on, moved along its line from the place nearest to `now` to the
-/// place nearest to `to` (m).
+/// A mark of the panel stage that a sheet lies on, moved along its line by the distance between the place
+/// nearest to `now` and the place nearest to `to` (m).
 fn moved_mark(
     evaluation: &Evaluation,
     (sheet, line, mark): (&Sheet, LineName, &Mark),
@@ -204,7 +204,7 @@ fn moved_mark(
     let along = |at: Vec2| path.nearest(at).map(|place| place.along);
     let shift = along(to).zip(along(now)).map(|(to, now)| to - now);
     let mut shift = shift.ok_or_else(lost)?;
-    // On a closed line the mark takes the shorter way round.
+    // On a closed line the mark moves the shorter way round.
     if shift.abs() > 0.5 * path.length() {
         shift -= path.length().copysign(shift);
     }
@@ -242,7 +242,7 @@ fn along_curve(
     Ok((place(to) - place(now), path.length().max(1e-12)))
 }
 
-/// The number with a shift added (m), (rad) or plain.
+/// A number with a shift added to its value (m), (rad) or plain, in all sizes.
 pub(super) fn added(number: &Number, shift: f64) -> Number {
     match number {
         Number::Value(value) => Number::Value(value + shift),

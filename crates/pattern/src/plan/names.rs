@@ -2,7 +2,7 @@
 
 use crate::{EditError, NAME_LENGTH, Panel, Pattern, Sheet, is_part_name};
 
-/// A free name made from a wanted one: `side`, `side 2`, `side 3`.
+/// The wanted name if it is free, else the wanted name and a number: `side`, `side 2`, `side 3`.
 pub(super) fn free_name(wanted: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut name: String = wanted.chars().take(NAME_LENGTH - 4).collect();
     let mut number = 2;
@@ -31,7 +31,7 @@ pub(super) fn letter_name(taken: impl Fn(&str) -> bool) -> String {
     }
 }
 
-/// A word with the first number from 1 that makes it a free name: `h1`, `h2`.
+/// A word with the smallest number, from 1, that makes a free name: `h1`, `h2`.
 pub(super) fn numbered_name(word: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut number = 1_u32;
     while taken(&format!("{word}{number}")) {
@@ -40,7 +40,7 @@ pub(super) fn numbered_name(word: &str, taken: impl Fn(&str) -> bool) -> String 
     format!("{word}{number}")
 }
 
-/// The requested name, if it is free; `owner` describes the part that has a name.
+/// The name asked for; `owner` describes the part, if any, that has a name already.
 ///
 /// # Errors
 /// The name is not allowed, or another part has it.
@@ -59,20 +59,20 @@ pub(super) fn wished(
     }
 }
 
-/// Description of the point of a sheet that has this name.
+/// Description of the point of a sheet that has this name, if any.
 pub(super) fn point_owner(sheet: &Sheet, name: &str) -> Option<String> {
     let found = sheet.point_named(name)?;
     Some(format!("point {:?} of sheet {:?}", found.name, sheet.name))
 }
 
-/// Description of the curve of a sheet that has this name.
+/// Description of the curve of a sheet that has this name, if any.
 pub(super) fn curve_owner(sheet: &Sheet, name: &str) -> Option<String> {
     let found = sheet.curve_named(name)?;
     Some(format!("curve {:?} of sheet {:?}", found.name, sheet.name))
 }
 
-/// Description of the part that has a sheet's name. A panel of another sheet counts too: formulas would find
-/// its parts.
+/// Description of the part that has the name `name` for a sheet already, if any. A panel traced from another
+/// sheet counts too: formulas with this name would find the panel's parts, not the sheet's.
 pub(super) fn sheet_owner(pattern: &Pattern, own: Option<&Sheet>, name: &str) -> Option<String> {
     let other = |sheet: &Sheet| own.is_none_or(|own| own.id != sheet.id);
     let mut sheets = pattern.sheets.iter();
@@ -86,8 +86,8 @@ pub(super) fn sheet_owner(pattern: &Pattern, own: Option<&Sheet>, name: &str) ->
         .then(|| format!("panel {name:?}"))
 }
 
-/// Description of the part that has a panel's name. A sheet that the panel is not traced from counts too:
-/// formulas would not find the sheet's parts any more.
+/// Description of the part that has the name `name` for a panel already, if any. A sheet that the panel is
+/// not traced from counts too: formulas would no longer find that sheet's parts.
 pub(super) fn panel_owner(pattern: &Pattern, own: &Panel, name: &str) -> Option<String> {
     let mut panels = pattern.panels.iter();
     if panels.any(|panel| panel.name == name && panel.id != own.id) {

@@ -9,21 +9,22 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Most notches in one row.
+/// Most notches that are added at once.
 const MAX_NOTCHES_IN_ROW: u32 = 100;
 
 /// Notches at equal distances between two corners of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotchRow {
-    /// The line.
+    /// The line that the notches are on.
     pub line: LineId,
-    /// The corners, in the order of the line; neither gets a notch.
+    /// The two corners, in the order of the line; no notch is added at the corners.
     pub ends: [CornerName; 2],
-    /// Number of notches.
+    /// Number of notches to add.
     pub count: u32,
 }
 
-/// Plans to add a notch to a line of a panel; returns the notch too. It is called `notch`, `notch 2`, ...
+/// Plans to add a notch to a line of a panel; returns the notch too. The notch is called `notch`, `notch 2`,
+/// ...
 ///
 /// # Errors
 /// The panel or line is missing, or the mark is not on the line.
@@ -37,7 +38,7 @@ pub fn add_notch(
     Ok((edits, ids[0]))
 }
 
-/// Plans to add a row of evenly spaced notches between two corners; returns the notches too.
+/// Plans to add evenly spaced notches between two corners; returns the notches too.
 ///
 /// # Errors
 /// The panel, line or corners are missing; the number of notches is 0 or above 100.
@@ -92,7 +93,8 @@ pub fn set_notch_kind(
     Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
 }
 
-/// Plans to remove a notch from a panel. Marks placed at it wait for its return.
+/// Plans to remove a notch from a panel. Marks placed at the notch stay, and are valid again if it comes
+/// back.
 ///
 /// # Errors
 /// The notch is missing.
@@ -105,7 +107,7 @@ pub fn remove_notch(
     Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
 }
 
-/// The panel, for changing, and the index of the notch in it.
+/// A copy of the panel to be changed, and the index of the notch in it.
 fn found(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -161,7 +163,7 @@ fn add(
     Ok((put(evaluation, changed, &made)?, made))
 }
 
-/// The edit that puts a panel, refused if one of these notches has no position.
+/// The edit that puts a panel into the pattern; refused if one of these notches has no position.
 fn put(evaluation: &Evaluation, panel: Panel, notches: &[NotchId]) -> Result<Vec<Edit>, EditError> {
     let (id, name) = (panel.id, panel.name.clone());
     let edits = vec![Edit::Put(Entity::Panel(Arc::new(panel)))];

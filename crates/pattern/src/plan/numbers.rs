@@ -8,13 +8,14 @@ use crate::{
     Code, Edit, EditError, Entity, Evaluation, Number, PartId, Pattern, Place, SizeId, VariableId,
 };
 
-/// The numbers of a part, in the order in which they are shown; empty if the part has none or is missing.
+/// The numbers of a part, in the order in which inspectors show them; empty if the part has no numbers or is
+/// missing.
 pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
     let entity = evaluation.pattern().entity_with(part);
     entity.map_or_else(Vec::new, |entity| entity.number_entries(Some(part)))
 }
 
-/// The number at an address, with its label and quantity; none if it is missing.
+/// The number at an address, with its label and quantity. `None`: it does not exist.
 pub fn number_entry(pattern: &Pattern, place: &NumberAddress) -> Option<NumberEntry> {
     let entries = pattern
         .entity_with(place.part)?
@@ -22,12 +23,12 @@ pub fn number_entry(pattern: &Pattern, place: &NumberAddress) -> Option<NumberEn
     entries.into_iter().find(|entry| entry.place == *place)
 }
 
-/// The number at an address; none if it is missing or left out.
+/// The number at an address. `None`: it does not exist or is left out.
 pub fn number_at(pattern: &Pattern, place: &NumberAddress) -> Option<Number> {
     number_entry(pattern, place)?.number
 }
 
-/// Sets the number at an address in an entity; returns whether the entity has such a number.
+/// Sets the number at an address in an entity; returns whether the number exists there.
 pub(super) fn put_number(entity: &mut Entity, place: &NumberAddress, number: &Number) -> bool {
     let mut is_there = false;
     entity.change(&mut |part| {
@@ -42,7 +43,7 @@ pub(super) fn put_number(entity: &mut Entity, place: &NumberAddress, number: &Nu
 /// Plans to set the number at an address.
 ///
 /// # Errors
-/// The entity has no such number; the new number has no value there, has the wrong dimension, or depends
+/// The entity has no number at the address; the new number has no value, has the wrong dimension, or depends
 /// on itself.
 pub fn set_number(
     evaluation: &Evaluation,
@@ -58,11 +59,11 @@ pub fn set_number(
     Ok(edits)
 }
 
-/// Plans to bring the number at an address to a value (m), (rad) or plain for the current measurements: a
-/// value is set, a formula stays and gets an adjustment.
+/// Plans to bring the number at an address to the value `to` (m), (rad) or plain, for the current
+/// measurements. A number that is a value is set to it; a formula stays and gets an adjustment.
 ///
 /// # Errors
-/// There is no number at the address; the number has no value now, or would have none.
+/// The address has no number; the number has no value now, or would have none after the change.
 pub fn adjust_number(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -83,11 +84,11 @@ pub fn adjust_number(
     set_number(evaluation, place, added(&number, to - now))
 }
 
-/// Plans to give a number an own value in one size (m), (rad) or plain, or to remove that value; the number
-/// stays as it is in all other sizes.
+/// Plans to give a number another value in one size (m), (rad) or plain, or to remove that value if `value`
+/// is `None`. The number stays unchanged for all other sizes.
 ///
 /// # Errors
-/// The size is missing, or there is no number at the address; the value is not finite.
+/// The size is missing, or the address has no number; the value is not finite.
 pub fn set_number_in_size(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -120,11 +121,11 @@ pub fn set_number_in_size(
     set_number(evaluation, place, number)
 }
 
-/// Plans to leave a number out: an edge then has the allowance of its panel, a spline its handles as drawn, a
-/// panel a level that the program finds.
+/// Plans to leave a number out. An edge then has the allowance of its panel, a spline its handles as drawn,
+/// and for the level of a panel on the body the program decides.
 ///
 /// # Errors
-/// There is no number at the address, or it cannot be left out.
+/// The address has no number, or the number cannot be left out.
 pub fn clear_number(
     evaluation: &Evaluation,
     place: &NumberAddress,
@@ -164,8 +165,8 @@ fn missing(place: &NumberAddress) -> EditError {
     EditError::Missing(format!("the {key} of {}", place.part))
 }
 
-/// Refuses edits that give the number at an address a fault of its own or make it depend on itself. A number
-/// that waits for other parts is accepted.
+/// Refuses edits with which the number at an address has a fault itself or depends on itself. A number
+/// without value because other parts are missing is accepted.
 pub(super) fn refuse_valueless(
     evaluation: &Evaluation,
     edits: &[Edit],

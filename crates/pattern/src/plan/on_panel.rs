@@ -13,10 +13,10 @@ use crate::{
 use std::sync::Arc;
 
 /// Plans to open a sheet on a panel as it is before it is unfolded, with a point at each of its corners;
-/// returns the sheet too. A sheet that already lies there is used.
+/// returns the sheet too. A sheet that already lies on that stage is used again.
 ///
 /// # Errors
-/// The panel is missing or cannot be drawn, or is split: then its sides are to be drawn on.
+/// The panel is missing, cannot be drawn, or is split, so that sheets can only lie on its sides.
 pub fn open_sheet(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -32,7 +32,7 @@ pub fn open_sheet(
     let fold = |step: &Arc<Operation>| matches!(step.kind, OperationKind::Fold { .. });
     let count = owner.operations.iter().position(fold);
     let count = count.unwrap_or(owner.operations.len());
-    // Inserted lines move nothing: a sheet drawn before them lies on this stage too.
+    // Inserted lines do not move the panel, so a sheet drawn before such an operation lies on this stage too.
     let steps = owner.operations[..count].iter();
     let last = steps.rev().find(|step| step.kind.sheet().is_none());
     let on = (panel, last.map(|step| step.id));
@@ -72,7 +72,7 @@ pub fn open_sheet(
     Ok((edits, id))
 }
 
-/// The corners of the outline of a stage.
+/// The corners of the outline of a stage, each with the name of the line.
 fn corners(stage: &Stage) -> Vec<(LineName, CornerName)> {
     let outline = stage
         .lines
@@ -85,8 +85,8 @@ fn corners(stage: &Stage) -> Vec<(LineName, CornerName)> {
     edges.collect()
 }
 
-/// The operation of a panel that inserts a sheet which lies on one of its stages: the present one, else a new
-/// one right after that stage.
+/// The operation with which a panel inserts a sheet that lies on one of its stages: the existing one, else a
+/// new operation right after that stage.
 pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> OperationId {
     let own = |step: &&Arc<Operation>| step.kind.sheet() == Some(sheet.id);
     if let Some(step) = panel.operations.iter().find(own) {
@@ -108,12 +108,12 @@ pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> Opera
     id
 }
 
-/// Plans to draw a straight curve between two places on a panel's line, with points that stay at these marks;
-/// returns the curve too. It is drawn on the panel's own sheet if no operation moved the two places, else on
-/// a sheet that lies on the finished panel.
+/// Plans to draw a straight curve between two places on a panel's line. Its ends are points that stay at
+/// these marks. Returns the curve too. It is drawn on the panel's own sheet if no operation moved the two
+/// places, else on a sheet that lies on the finished panel.
 ///
 /// # Errors
-/// The panel is missing, cannot be drawn, or is split; the places are the same.
+/// The panel is missing, cannot be drawn, or is split; both places are the same.
 pub fn line_across(
     evaluation: &Evaluation,
     panel: PanelId,

@@ -13,32 +13,32 @@ use toile_geometry::{Curve, Path, Vec2};
 pub(super) struct OnEdge {
     pub line: LineId,
     pub edge: EdgeName,
-    /// Corners of the whole edge: as drawn if the edge was drawn.
+    /// Corners at the ends of the whole edge; for a drawn edge its drawn ends.
     pub ends: [CornerName; 2],
-    /// Share of the edge's arc length.
+    /// Share of the edge's arc length, from the start of the edge (1).
     pub share: f64,
     /// Length of the whole edge (m).
     pub length: f64,
     pub at: Vec2,
 }
 
-/// A part of an edge of a panel's stage: one curve.
+/// A part of an edge on a stage of a panel, with one curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgePart {
     /// The line that the edge is on.
     pub line: LineId,
-    /// The edge.
+    /// Name of the edge that the part belongs to.
     pub edge: EdgeName,
-    /// Corners of the whole edge: as drawn if the edge was drawn.
+    /// Corners at the ends of the whole edge; for a drawn edge its drawn ends.
     pub ends: [CornerName; 2],
-    /// Shares of the edge's arc length at the start and the end of the part.
+    /// Shares of the edge's arc length at the start and the end of the part (1).
     pub shares: [f64; 2],
     /// The curve of the part (m).
     pub curve: Curve,
 }
 
-/// The edges of a stage of a panel, part by part; legs of darts and the other half of a folded panel are
-/// left out.
+/// All parts of the edges on a stage of a panel. Legs of darts, and halves of a folded panel that are not
+/// drawn, are left out.
 pub fn edge_parts(evaluation: &Evaluation, panel: &Panel, stage: &Stage) -> Vec<EdgePart> {
     let mut parts = Vec::new();
     for line in &stage.lines {
@@ -62,7 +62,7 @@ pub fn edge_parts(evaluation: &Evaluation, panel: &Panel, stage: &Stage) -> Vec<
 }
 
 impl EdgePart {
-    /// The position on the part nearest to a point (m), and its share of the whole edge's arc length; none if
+    /// The position on the part nearest to a point (m), and its share of the whole edge's arc length. `None`:
     /// the part has no length.
     pub fn nearest(&self, near: Vec2) -> Option<(Vec2, f64)> {
         let path = Path::new(vec![self.curve]);
@@ -74,8 +74,8 @@ impl EdgePart {
     }
 }
 
-/// The position nearest to a point of a finished panel (m) on those of its edges that are wanted; none if
-/// there is no such edge.
+/// The position nearest to a point of a finished panel (m), among the edges that are wanted. `None`: the
+/// panel has no such edge.
 pub(super) fn nearest_edge(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -100,7 +100,7 @@ pub(super) fn nearest_edge(
     })
 }
 
-/// Corners of the whole edge that one edge of a stage line covers a part of.
+/// Corners at the ends of the whole edge to which the edge `k` of a stage line belongs.
 fn ends_of(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -115,7 +115,7 @@ fn ends_of(
     }
 }
 
-/// Corners at the start and the end of an edge of a line on its stage.
+/// Corners at the start and the end of a named edge of a line on its stage.
 fn corners_of(line: &StageLine, edge: EdgeName) -> Option<[CornerName; 2]> {
     let count = line.edges.len();
     let is_own = |k: usize| {
@@ -153,7 +153,7 @@ pub(super) fn mark_value(evaluation: &Evaluation, panel: &Panel, mark: &Mark) ->
     })
 }
 
-/// Position of a mark of a line on the finished panel (m).
+/// Position, on the finished panel, of a mark on a line (m).
 pub(super) fn place_of(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -172,7 +172,7 @@ pub(super) fn place_of(
     Some(stage.at_spot(line, spot.ok()?)?.0)
 }
 
-/// The outline of a finished panel.
+/// Name of the outline of a finished panel.
 ///
 /// # Errors
 /// The panel is missing or its outline cannot be drawn.
@@ -189,11 +189,11 @@ pub fn outline_of(evaluation: &Evaluation, panel: PanelId) -> Result<LineName, E
     })
 }
 
-/// The line of an edge of a panel, and the corners of the edge there; for an edge that a split divides, the
-/// corners of its part on that side.
+/// The line of an edge of a panel, and the corners of the edge on it. For an edge that a split divides, these
+/// are the corners of the part on this side.
 ///
 /// # Errors
-/// The panel has no such edge, or no part of the edge lies on that side.
+/// The panel has no such edge, or no part of the edge lies on this side.
 pub fn edge_ends(
     evaluation: &Evaluation,
     panel: &Panel,

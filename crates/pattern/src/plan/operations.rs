@@ -9,11 +9,12 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Plans to add an operation to a panel; returns the operation too. It is named after its kind: `dart`,
-/// `dart 2`. It is inserted before the first fold, so that both halves have it; a fold comes last.
+/// Plans to add an operation to a panel; returns the operation too. Its name is that of its kind: `dart`,
+/// `dart 2`. It is inserted before the first fold, so that both halves have it; a fold is added as the last
+/// operation.
 ///
 /// # Errors
-/// The panel is missing or cannot be drawn; the operation cannot be done, for the reason in the message.
+/// The panel is missing or cannot be drawn; the operation cannot be done (the message gives the reason).
 pub fn add_operation(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -25,7 +26,7 @@ pub fn add_operation(
     let id: OperationId = ids.take();
     let named = |name: &str| changed.operations.iter().any(|known| known.name == name);
     let name = free_name(kind.word(), named);
-    // Folds come last.
+    // Folds are added after all other operations.
     let fold = |known: &Arc<Operation>| known.kind.fold_ends().is_some();
     let end = changed.operations.len();
     let at = match kind.fold_ends() {
@@ -42,11 +43,11 @@ pub fn add_operation(
     Ok((put(evaluation, changed, &[id])?, id))
 }
 
-/// Plans to change the settings of an operation: it keeps its id, name and place, so that parts named after
-/// it stay.
+/// Plans to change the settings of an operation. The operation keeps its id, name and place in the order, so
+/// parts that are named by it keep their names.
 ///
 /// # Errors
-/// The operation is missing, or cannot be done with these settings, for the reason in the message.
+/// The operation is missing, or cannot be done with these settings (the message gives the reason).
 pub fn set_operation(
     evaluation: &Evaluation,
     (panel, operation): (PanelId, OperationId),
@@ -58,10 +59,11 @@ pub fn set_operation(
     put(evaluation, changed, &[operation])
 }
 
-/// Plans to move an operation to another index among the panel's operations, counted from 0 and clamped.
+/// Plans to move an operation to another index in the order of the panel's operations; an index beyond the
+/// end is the end.
 ///
 /// # Errors
-/// The operation is missing; one of the panel's operations could then not be done.
+/// The operation is missing; one of the panel's operations could then no longer be done.
 pub fn move_operation(
     evaluation: &Evaluation,
     (panel, operation): (PanelId, OperationId),
@@ -76,7 +78,8 @@ pub fn move_operation(
     put(evaluation, changed, &all)
 }
 
-/// Plans to remove an operation from a panel. References to parts that it made wait for its return.
+/// Plans to remove an operation from a panel. References to parts that it made stay, and are valid again if
+/// it comes back.
 ///
 /// # Errors
 /// The operation is missing.
@@ -95,7 +98,7 @@ fn position(panel: &Panel, operation: OperationId) -> Result<usize, EditError> {
     found.ok_or_else(|| EditError::Missing(format!("{operation} of panel {:?}", panel.name)))
 }
 
-/// The edit that puts a panel, refused if one of its operations cannot be done.
+/// The edit that puts a panel into the pattern; refused if one of these operations cannot be done.
 fn put(
     evaluation: &Evaluation,
     panel: Panel,
@@ -111,8 +114,8 @@ fn put(
         .collect();
     let undone =
         |found: &Diagnostic| found.severity == Severity::Error && places.contains(&found.place);
-    // An adjusted operation is also refused for a fault that it had before; faults of other operations count
-    // only if they are new.
+    // The one operation that is added or changed is refused for any fault, even one that it had before;
+    // faults elsewhere count only if they are new.
     if let ([_], Some(found)) = (operations, after.diagnostics().into_iter().find(undone)) {
         return Err(impossible(found.message, found.hint));
     }
@@ -126,14 +129,14 @@ fn put(
     }
 }
 
-/// Refuses operations with points or curves of foreign sheets: they must be on the panel's own sheet, or on
-/// one that lies on the stage before the operation.
+/// Refuses operations that use points or curves of other sheets: they must be on the panel's own sheet, or on
+/// a sheet that lies on the stage before the operation.
 fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), EditError> {
     let mut pattern = evaluation.pattern().clone();
     pattern.apply(&[Edit::Put(Entity::Panel(Arc::new(panel.clone())))])?;
     let own = pattern.sheet_of(panel);
     for (step, operation) in (1..).zip(&panel.operations) {
-        // A part that is gone is reported by the operation that lacks it.
+        // A missing part is reported by the operation that uses it.
         let points = fields::points(&operation.kind)
             .into_iter()
             .filter_map(|id| {
@@ -176,7 +179,8 @@ fn refuse_foreign_parts(evaluation: &Evaluation, panel: &Panel) -> Result<(), Ed
     Ok(())
 }
 
-/// Whether the sheet of an insert lies at present on the stage before it.
+/// Whether the sheet that an operation inserts lies on the stage before that operation, in the pattern as it
+/// is now.
 fn was_laid(evaluation: &Evaluation, panel: PanelId, insert: &Operation) -> bool {
     let pattern = evaluation.pattern();
     let found = pattern.panel(panel).and_then(|panel| {

@@ -15,13 +15,13 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2};
 
-/// Distance between parts and their duplicate (m).
+/// Distance between parts and their duplicates (m).
 const GAP: f64 = 0.05;
 
 /// Destination of a pasted fragment.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct PasteTarget {
-    /// The sheet to paste onto; none makes new sheets.
+    /// The sheet to paste onto. `None`: new sheets are made.
     pub sheet: Option<SheetId>,
     /// Displacement of the parts on the sheet, or of new sheets on the table (m).
     pub offset: [f64; 2],
@@ -32,18 +32,18 @@ pub struct PasteTarget {
 pub struct Pasted {
     /// The edits that paste the parts.
     pub edits: Vec<Edit>,
-    /// The new points, curves, sheets, panels, seams and variables.
+    /// New points, curves, sheets, panels, seams and variables.
     pub parts: Vec<PartId>,
-    /// Numbers that named parts missing here: they are values now, or wait for a new number if they had
-    /// no value.
+    /// Numbers whose formulas name parts that this pattern does not have: each is now a value or, if it had
+    /// no value, needs a new number.
     pub loosened: Vec<NumberAddress>,
-    /// Names of sizes missing here: the own values of numbers for these sizes are dropped.
+    /// Names of sizes that this pattern does not have: values of numbers for these sizes are left out.
     pub lost_sizes: Vec<String>,
 }
 
-/// Plans to paste a fragment, with ids and names of its own. A formula keeps a reference to a part outside
-/// the fragment if this is the pattern it was copied from and the part is there; otherwise the number becomes
-/// the value it had, and is listed.
+/// Plans to paste a fragment, with new ids and free names. A formula keeps its reference to a part outside
+/// the fragment if the fragment was copied from this pattern and the part still exists; otherwise the number
+/// becomes the value that it had, and is listed in the result.
 ///
 /// # Errors
 /// The sheet is missing; the offset is not finite; two parts of the fragment have the same id, or the pattern
@@ -79,7 +79,7 @@ pub fn paste(
     }
 }
 
-/// Refuses data in which two parts have the same id: references would be ambiguous.
+/// Refuses fragments in which two parts have the same id: references to it would be ambiguous.
 fn refuse_doubles(fragment: &Fragment) -> Result<(), EditError> {
     let mut seen = HashSet::new();
     let parts = fragment.as_pattern().parts().into_iter();
@@ -92,8 +92,8 @@ fn refuse_doubles(fragment: &Fragment) -> Result<(), EditError> {
     }
 }
 
-/// Plans to duplicate parts beside themselves: panels with a new sheet to the right on the table, points and
-/// curves to the right on their sheet.
+/// Plans to duplicate parts beside the originals: panels with a new sheet to the right on the table, points
+/// and curves to the right on their own sheet.
 ///
 /// # Errors
 /// Any error of [`copy`] and [`paste`].
@@ -120,9 +120,9 @@ pub fn duplicate(evaluation: &Evaluation, parts: &[PartId]) -> Result<Pasted, Ed
     paste(evaluation, &fragment, target)
 }
 
-/// Plans to insert all panels of another pattern, with its sheets, seams, variables and fabrics, at an offset
-/// on the table (m). Its sizes are left out, since it is drawn for the sizes of this pattern; so are its
-/// markers, which were laid for those sizes.
+/// Plans to insert another pattern, with its sheets, panels, seams, variables and fabrics, at an offset on
+/// the table (m). Its sizes are left out, since it is then drafted for the sizes of this pattern, and so are
+/// its markers, which were laid for its own sizes.
 ///
 /// # Errors
 /// The other pattern has nothing to insert; any error of [`paste`].
@@ -132,7 +132,8 @@ pub fn insert_pattern(
     offset: [f64; 2],
 ) -> Result<Pasted, EditError> {
     let mut fragment = copy_all(other)?;
-    // It is another pattern even if both have the same name: no reference leads to a part of this one.
+    // Even if both patterns have the same name they are different: no reference may lead to a part of this
+    // pattern.
     fragment
         .outside
         .iter_mut()
@@ -145,9 +146,9 @@ pub fn insert_pattern(
 }
 
 struct Pasting {
-    /// The pattern with everything pasted so far.
+    /// The pattern with all parts that are pasted so far.
     work: Pattern,
-    /// The parts that the pattern had before.
+    /// The parts that the pattern had before pasting.
     known: HashSet<PartId>,
     ids: Ids,
     remap: Remap,
@@ -155,7 +156,8 @@ struct Pasting {
 }
 
 impl Pasting {
-    /// The fragment with numbers replaced by their values if they name parts missing here.
+    /// The fragment, with numbers replaced by their values if they name parts that this pattern does not
+    /// have.
     fn loosened(&mut self, fragment: &Fragment) -> Result<Fragment, EditError> {
         let mut own = fragment.as_pattern();
         let mine: HashSet<PartId> = own.parts().into_iter().map(|(id, _)| id).collect();
@@ -197,7 +199,8 @@ impl Pasting {
             variables: own.variables,
             ..fragment.clone()
         };
-        // A lost part gets a new id that no part has, so that it is not mistaken for another part.
+        // A part that does not exist here gets an unused id, so that the reference does not lead to another
+        // part.
         for entity in changed.entities() {
             for lost in entity.references().into_iter().filter(|id| !stays(id)) {
                 let ids = &mut self.ids;
@@ -210,7 +213,8 @@ impl Pasting {
         Ok(changed)
     }
 
-    /// Gives every part of a fragment a new id, except for parts that are here already.
+    /// Maps the id of every part of a fragment to a new id, or to that of an equal part that exists here
+    /// already.
     fn number(&mut self, fragment: &Fragment, sheet: Option<SheetId>) {
         for (part, _) in fragment.as_pattern().parts() {
             let known = match (part, sheet) {
@@ -242,7 +246,7 @@ impl Pasting {
         }
     }
 
-    /// The fabric here with the same name.
+    /// The fabric of this pattern with the same name.
     fn same_fabric(&self, fabrics: &[Arc<Fabric>], part: PartId) -> Option<PartId> {
         let fabric = fabrics
             .iter()
@@ -252,7 +256,8 @@ impl Pasting {
             .map(|own| own.id.into())
     }
 
-    /// The variable here with the same name and the same number, if its formula names only measurements.
+    /// The variable of this pattern with the same name and the same number, if its formula names only
+    /// measurements.
     fn same_variable(&self, variables: &[Arc<Variable>], part: PartId) -> Option<PartId> {
         let variable = variables.iter().find(|v| PartId::from(v.id) == part)?;
         let own = self.work.variable_named(&variable.name)?;
@@ -263,7 +268,7 @@ impl Pasting {
         (is_of_body && own.number == variable.number).then(|| own.id.into())
     }
 
-    /// Puts an entity of the fragment into the pattern with its new id and a free name.
+    /// Puts an entity of the fragment into the pattern, with its new id and a free name.
     fn put(&mut self, entity: Entity, target: PasteTarget) -> Result<(), EditError> {
         let mut entity = self.remap.entity(entity);
         let is_here = |id: PartId| self.known.contains(&id);
@@ -326,7 +331,7 @@ impl Pasting {
         }
     }
 
-    /// The result, with addresses by the new ids.
+    /// The result of pasting; its addresses contain the new ids.
     fn finished(mut self, fragment: &Fragment) -> Pasted {
         let places = fragment.values.iter().map(|value| &value.place);
         let loose: Vec<NumberAddress> = places
@@ -341,8 +346,8 @@ impl Pasting {
     }
 }
 
-/// A name for a pasted point: its own; if that is taken, the next free letter for a letter name, else the
-/// name with a number.
+/// A name for a pasted point: its own if it is free; else the next free letter for a point named by a letter,
+/// else its own name with a number.
 fn point_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.to_owned();
@@ -356,7 +361,7 @@ fn point_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     }
 }
 
-/// A length in the form that variables need: a formula with a unit.
+/// A length as a variable needs it: a formula with a unit.
 fn length(value: f64) -> Number {
     let formula = Formula::of_measurements(&format!("{value:?}m"));
     formula.map_or(Number::Value(value), Number::Formula)
@@ -384,7 +389,7 @@ fn fresh(part: PartId, ids: &mut Ids) -> PartId {
     }
 }
 
-/// Puts a part into a pattern in which parts that it refers to may still be missing.
+/// Puts a part into a pattern without checking that the parts it refers to exist.
 fn put_unchecked(work: &mut Pattern, edit: &Edit) -> Result<(), EditError> {
     let ids = std::mem::replace(&mut work.ids, Ids { next: u32::MAX });
     let result = work.apply(std::slice::from_ref(edit));

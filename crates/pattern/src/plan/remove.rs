@@ -18,11 +18,11 @@ use crate::{
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Plans to remove a point: at a corner of a panel's line its edges are joined, any other point is removed
-/// from its sheet. Parts constructed from it wait for its return.
+/// Plans to remove a point. If it is a corner of a panel's line, the edges that meet there are joined; any
+/// other point is removed from its sheet, and parts constructed from it have no shape until it comes back.
 ///
 /// # Errors
-/// The point is missing, or its line would have too few corners left.
+/// The point is missing, or the line would have too few corners left.
 pub fn remove_point(
     evaluation: &Evaluation,
     (panel, point): (PanelId, PointId),
@@ -35,12 +35,12 @@ pub fn remove_point(
     Ok(vec![Edit::Remove(point.into())])
 }
 
-/// Plans to remove a selection of parts of any kinds. At removed corners of panels that stay, edges are
-/// joined first; an edge is removed from the end or the middle of an internal line. All other parts that
-/// depend on removed ones wait for their return.
+/// Plans to remove selected parts of any kinds. At removed corners of panels that stay, edges are joined
+/// first; an edge is removed from the end or the middle of an internal line. Other parts that refer to
+/// removed ones stay, and are valid again if these come back.
 ///
 /// # Errors
-/// A part is missing; a panel would lose its outline, or a closed line an edge or too many corners.
+/// A part is missing; a panel would lose its outline; a closed line would lose an edge or too many corners.
 pub fn remove_parts(evaluation: &Evaluation, parts: &[PartId]) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
     let known: HashSet<PartId> = pattern.parts().into_iter().map(|(id, _)| id).collect();
@@ -119,7 +119,7 @@ fn is_on_removed_sheet(pattern: &Pattern, gone: &HashSet<PartId>, part: PartId) 
     sheet.is_some_and(|sheet| gone.contains(&sheet.id.into()))
 }
 
-/// The remaining panels in which a point is a corner between two edges.
+/// Panels that stay and have the point as a corner between two edges, each with the point.
 fn corners(pattern: &Pattern, gone: &HashSet<PartId>, point: PointId) -> Vec<(PanelId, PointId)> {
     let between = |line: &Line| {
         let ends_here = line.edges.iter().any(|edge| edge.ends[1] == point);
@@ -133,7 +133,7 @@ fn corners(pattern: &Pattern, gone: &HashSet<PartId>, point: PointId) -> Vec<(Pa
     with.map(|panel| (panel.id, point)).collect()
 }
 
-/// The edit that puts a panel without its removed parts; none if none of its parts is removed.
+/// The edit that puts a panel without its removed parts. `None`: none of its parts is removed.
 fn thinned(
     panel: &Arc<Panel>,
     gone: &HashSet<PartId>,

@@ -12,13 +12,13 @@ use crate::{
 use std::sync::Arc;
 use toile_measure::definition;
 
-/// Plans to rename a part; no edits if it has that name already. Formulas that name a part with the new name,
-/// and found none, refer to it from now on.
+/// Plans to rename a part; no edits if it has that name already. Formulas in which the new name stood for no
+/// part refer to this part afterwards.
 ///
 /// # Errors
-/// The part is missing; the name is not allowed, or another part in its scope has it: sizes, variables,
-/// fabrics, sheets, panels, seams and markers in the pattern, points and curves in their sheet, lines, edges,
-/// notches and operations in their panel.
+/// The part is missing; the name is not allowed, or another part of its owner has it. The owner is the
+/// pattern for sizes, variables, fabrics, sheets, panels, seams and markers; the sheet for points and curves;
+/// the panel for lines, edges, notches and operations.
 pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();
     let parts = pattern.parts();
@@ -58,7 +58,7 @@ pub fn rename(evaluation: &Evaluation, part: PartId, name: &str) -> Result<Vec<E
     Ok(edits)
 }
 
-/// A sheet, a point, a curve or a panel with the new name; none for other parts.
+/// A sheet, a point, a curve or a panel with the new name. `None`: the part is of another kind.
 fn of_sheet(pattern: &Pattern, part: PartId, name: &str) -> Result<Option<Entity>, EditError> {
     Ok(Some(match part {
         PartId::Sheet(id) => {
@@ -156,8 +156,8 @@ fn of_pattern(pattern: &Pattern, part: PartId, name: &str) -> Result<Entity, Edi
     })
 }
 
-/// The name of a variable, refused if it is taken or is the name of a measurement: formulas in files would
-/// then refer to the variable.
+/// The name for a variable; refused if it is taken or is the name of a measurement. In files, formulas that
+/// name the measurement would then refer to the variable.
 pub(super) fn variable_name(
     pattern: &Pattern,
     own: Option<&Variable>,
@@ -186,7 +186,7 @@ pub(super) fn variable_name(
     Ok(name)
 }
 
-/// The name, refused if another part of the kind has it.
+/// The name; refused if another part of this kind has it.
 fn free<'n>(
     name: &str,
     kind: &str,
@@ -200,7 +200,7 @@ fn free<'n>(
     })
 }
 
-/// A panel with one of its own parts renamed.
+/// A copy of a panel, with one of its own parts renamed.
 fn renamed(panel: &Panel, part: PartId, name: &str) -> Result<Panel, EditError> {
     let mut changed = panel.clone();
     let of = |kind: &str, names: Vec<(PartId, &str)>| {

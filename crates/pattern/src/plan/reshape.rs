@@ -10,25 +10,26 @@ use crate::{
     OperationKind, Panel, PanelId, PleatKind, PleatLine, Pressed, Role, Side, SpreadCut, Turned,
 };
 
-/// Request to pivot a dart.
+/// Request to pivot a dart, that is to move some of its intake to a new dart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PivotWish {
-    /// The dart: a dart or a pivot of the panel.
+    /// The operation that made the dart: a dart or a pivot of the panel.
     pub dart: OperationId,
     /// The line and the position on it where the new mouth opens.
     pub mouth: (LineName, Mark),
-    /// Plain share of the dart that is moved to the new one, from 0 to 1.
+    /// Share of the dart's angle that is moved to the new dart, from 0 to 1.
     pub share: Number,
-    /// Distance from the pivot point at which both darts then end (m).
+    /// Distance from the pivot point at which both darts end after the pivot (m).
     pub back: Number,
-    /// The part that is turned; none chooses the part without the fold, else the shorter one.
+    /// The part of the panel that is turned. `None`: the part without the fold, else the shorter part.
     pub turned: Option<Turned>,
 }
 
 /// Plans to pivot a dart; returns the operation too. The new dart is pressed in the default direction.
 ///
 /// # Errors
-/// The panel is missing or cannot be drawn; the dart cannot be pivoted so, for the reason in the message.
+/// The panel is missing or cannot be drawn; the dart cannot be pivoted like this (the message gives the
+/// reason).
 pub fn pivot_dart(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -52,7 +53,8 @@ pub fn pivot_dart(
     add_operation(evaluation, panel, kind)
 }
 
-/// The part of a panel without its fold, else the shorter one; none if the parts cannot be found.
+/// The part of a panel that does not contain its fold, else the shorter part. `None`: the parts cannot be
+/// found.
 fn freer_part(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -111,19 +113,19 @@ fn freer_part(
 pub struct SpreadWish {
     /// The line that the cuts start and end on.
     pub line: LineName,
-    /// Start and end of each cut, and its opening at both (m).
+    /// Start and end of each cut, and its openings at the start and at the end (m).
     pub cuts: Vec<([Mark; 2], [Number; 2])>,
-    /// A place that stays fixed; none chooses the start of the fold, else of the line.
+    /// A place of the panel that stays fixed. `None`: the start of the fold, else of the line.
     pub held: Option<Mark>,
-    /// Shape of the outline across openings.
+    /// Shape of the outline across the openings.
     pub bridge: Bridge,
 }
 
 /// Plans to spread a panel; returns the operation too.
 ///
 /// # Errors
-/// The panel is missing or cannot be drawn; there is no cut; the panel cannot be spread so, for the reason in
-/// the message.
+/// The panel is missing or cannot be drawn; there is no cut; the panel cannot be spread like this (the
+/// message gives the reason).
 pub fn spread_panel(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -171,17 +173,17 @@ pub struct PleatWish {
     pub depth: Number,
     /// Kind of pleat.
     pub kind: PleatKind,
-    /// The side of its line to which a knife pleat is pressed.
+    /// The side of its pleat line to which a knife pleat is pressed.
     pub pressed: Side,
-    /// A place that stays fixed; none chooses the start of the fold, else of the line.
+    /// A place of the panel that stays fixed. `None`: the start of the fold, else of the line.
     pub held: Option<Mark>,
 }
 
 /// Plans to pleat a panel; returns the operation too. The pleats are trued.
 ///
 /// # Errors
-/// The panel is missing or cannot be drawn; there is no line; the panel cannot be pleated so, for the reason
-/// in the message.
+/// The panel is missing or cannot be drawn; there is no pleat line; the panel cannot be pleated like this
+/// (the message gives the reason).
 pub fn pleat_panel(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -253,7 +255,7 @@ pub fn even_cuts(
         ends,
         share: share.into(),
     };
-    // Opposite edges of a closed line run against each other.
+    // Opposite edges of a closed line run in opposite directions.
     let cuts = (1..=count).map(|k| {
         let share = f64::from(k) / f64::from(count + 1);
         [between(start, share), between(end, 1.0 - share)]

@@ -11,17 +11,18 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// An edge shorter than this has been taken in by a dart (m).
+/// Length below which an edge counts as taken in by a dart (m).
 const MIN_LENGTH: f64 = 1e-9;
 
-/// An edge on a copy and half of a panel, as an item of a chain.
+/// One edge of a chain that is sewn: the edge on a copy and half of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SewnEdge {
     /// The panel.
     pub panel: PanelId,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Half of a folded panel: 0 as drawn; each fold has one bit, set for the half beyond that fold.
+    /// Half of a folded panel: 0 is the half as drawn; each fold has one bit, which is set for the half
+    /// beyond that fold.
     pub half: u8,
     /// The edge.
     pub edge: EdgeId,
@@ -38,7 +39,7 @@ pub enum SeamSide {
 }
 
 impl SeamSide {
-    /// Index among the sides of a seam.
+    /// Index in the sides of a seam.
     pub(super) fn index(self) -> usize {
         match self {
             Self::First => 0,
@@ -47,9 +48,10 @@ impl SeamSide {
     }
 }
 
-/// Plans to sew two chains of edges together, start to start; returns the seam too. Edges of one panel follow
-/// each other along its line in either direction, and this direction tells where the chain starts. A chain of
-/// single edges is walked so that right sides lie together. Without a name the seam is named after its edges.
+/// Plans to sew two chains of edges together, beginning at the start of each; returns the seam too. Edges of
+/// one panel follow each other along its line in either direction, which decides where the chain starts. A
+/// chain of single edges is walked so that right sides lie together. Without a name the seam is named after
+/// its edges.
 ///
 /// # Errors
 /// A chain is empty; an edge, copy or half is missing, does not follow the edge before it, or is sewn to
@@ -92,10 +94,10 @@ pub fn sew(
     Ok((put(evaluation, seam)?, id))
 }
 
-/// Plans to walk one side of a seam from its other end, so that its ends change places.
+/// Plans to walk one side of a seam in the other direction, so that its start and end change places.
 ///
 /// # Errors
-/// The seam is missing, or would have no position.
+/// The seam is missing, or a span would have no position.
 pub fn flip_side(
     evaluation: &Evaluation,
     seam: SeamId,
@@ -117,7 +119,7 @@ pub fn remove_seam(evaluation: &Evaluation, seam: SeamId) -> Result<Vec<Edit>, E
     Ok(vec![Edit::Remove(seam.into())])
 }
 
-/// An edge on the stage of its panel.
+/// An edge on the last stage of its panel.
 struct RunEdge<'p> {
     id: EdgeId,
     name: &'p str,
@@ -131,27 +133,28 @@ struct Run<'p> {
     line: LineId,
     first: SewnEdge,
     edges: Vec<RunEdge<'p>>,
-    /// Whether the run is walked against the line; none if it is a single edge, which tells no direction.
+    /// Whether the run is walked against the direction of its line. `None`: the run is a single edge and
+    /// shows no direction.
     backwards: Option<bool>,
 }
 
 impl Run<'_> {
-    /// Whether the cloth of the run lies mirrored on the table: an odd copy of a pair, or a half beyond
-    /// a fold.
+    /// Whether the cloth of the run is a mirror image of the panel as drawn: an odd copy of a pair, or a half
+    /// beyond a fold.
     fn is_mirrored(&self) -> bool {
         let odd_copy = self.panel.cut.mirrored && self.first.copy % 2 == 1;
         let beyond = self.first.half.count_ones() % 2 == 1;
         odd_copy != beyond
     }
 
-    /// Whether the run is walked clockwise round its cloth, seen from the right side; none if it tells
+    /// Whether the run is walked clockwise round its cloth, seen from the right side. `None`: the run shows
     /// no direction.
     fn is_clockwise(&self) -> Option<bool> {
         let backwards = self.backwards?;
         Some(backwards != self.is_mirrored())
     }
 
-    /// The span of the run, walked in the given direction unless the run itself tells one.
+    /// The span of the run. It is walked as `clockwise` says, unless the run itself shows a direction.
     fn span(&self, clockwise: bool) -> Span {
         let backwards = self.backwards.unwrap_or(clockwise != self.is_mirrored());
         let (first, last) = (&self.edges[0], &self.edges[self.edges.len() - 1]);
@@ -191,7 +194,7 @@ fn located(evaluation: &Evaluation, sewn: SewnEdge) -> Result<Located<'_>, EditE
     Ok(Located { panel, line, edge })
 }
 
-/// Divides a chain into runs.
+/// Divides a chain into runs of consecutive edges.
 fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p>>, EditError> {
     let mut runs: Vec<Run<'p>> = Vec::new();
     for (k, &sewn) in chain.iter().enumerate() {
@@ -245,8 +248,8 @@ fn runs<'p>(evaluation: &'p Evaluation, chain: &[SewnEdge]) -> Result<Vec<Run<'p
     }
 }
 
-/// Whether one edge meets another on the finished panel, with nothing between them but darts: a dart may have
-/// taken in a whole edge there.
+/// Whether an edge meets the next one on the finished panel, with nothing but darts between them: a dart may
+/// have taken in a whole edge that lay there.
 fn is_closed_between(evaluation: &Evaluation, panel: &Panel, edges: [EdgeId; 2]) -> bool {
     let Some(stage) = evaluation.last_stage(panel) else {
         return false;
@@ -262,8 +265,8 @@ fn is_closed_between(evaluation: &Evaluation, panel: &Panel, edges: [EdgeId; 2])
     })
 }
 
-/// Whether each side is walked clockwise. With right sides together the two plies lie face to face, so one
-/// side is walked counter-clockwise round its cloth where the other is walked clockwise.
+/// For each side, whether it is walked clockwise. With right sides together the two plies lie face to face,
+/// so one side is walked counter-clockwise round its cloth where the other is walked clockwise.
 fn orientations(runs: &[Vec<Run<'_>>; 2]) -> [bool; 2] {
     let told = |side: usize| runs[side].iter().find_map(Run::is_clockwise);
     match (told(0), told(1)) {
@@ -271,14 +274,14 @@ fn orientations(runs: &[Vec<Run<'_>>; 2]) -> [bool; 2] {
         (Some(one), None) => [one, !one],
         (None, Some(two)) => [!two, two],
         (None, None) => {
-            // The first edge is walked in its drawn direction.
+            // No run shows a direction: the first edge is walked in its drawn direction.
             let one = runs[0].first().is_some_and(Run::is_mirrored);
             [one, !one]
         }
     }
 }
 
-/// A name made from the names of the sewn edges.
+/// A name for a new seam, made from the names of the sewn edges.
 fn proposed(runs: &[Vec<Run<'_>>; 2]) -> String {
     let [one, two] = [0, 1].map(|side| runs[side].first());
     let (Some(one), Some(two)) = (one, two) else {
@@ -296,7 +299,7 @@ fn proposed(runs: &[Vec<Run<'_>>; 2]) -> String {
     }
 }
 
-/// The words with which all names begin: `side` for `side_low`, `side_high` and `side`.
+/// The words that all names begin with: `side` for `side_low`, `side_high` and `side`.
 fn common_words<'n>(names: &[&'n str]) -> &'n str {
     let is_between = |c: char| c == '_' || c == ' ';
     let Some((first, others)) = names.split_first() else {
@@ -315,7 +318,7 @@ fn common_words<'n>(names: &[&'n str]) -> &'n str {
     end.map_or("", |end| &first[..end])
 }
 
-/// The edit that puts a seam, refused if the seam has no position.
+/// The edit that puts a seam into the pattern; refused if the seam has no position.
 fn put(evaluation: &Evaluation, seam: Seam) -> Result<Vec<Edit>, EditError> {
     let (id, name) = (seam.id, seam.name.clone());
     let edits = vec![Edit::Put(Entity::Seam(Arc::new(seam)))];

@@ -3,9 +3,9 @@
 use crate::{Evaluation, Panel, PartId, Pattern, PointId, fields};
 use std::collections::BTreeSet;
 
-/// The points that define the shapes of parts, each once, in the order of their sheets: for a point itself;
-/// for a curve its ends, handles and knots; for an edge, line or panel the points of the curves it follows,
-/// and of the apexes in it; for a sheet all its points. Parts without points give none.
+/// The points that define the shapes of parts, each once, in the order of their sheets. For a point, the
+/// point itself; for a curve, its ends, handles and knots; for an edge, line or panel, the points of the
+/// curves that it follows and the dart ends in it; for a sheet, all its points. Other parts have no points.
 pub fn points_of(evaluation: &Evaluation, parts: &[PartId]) -> Vec<PointId> {
     let pattern = evaluation.pattern();
     let mut found: BTreeSet<PointId> = BTreeSet::new();

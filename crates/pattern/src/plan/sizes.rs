@@ -13,7 +13,7 @@ use crate::{
 use std::sync::Arc;
 use toile_measure::{Measurements, Origin};
 
-/// Plans to add a size with measurements; returns the size too. Without a name it is called `size`,
+/// Plans to add a size with measurements; returns the size too. Without a name the size is called `size`,
 /// `size 2`, ...
 ///
 /// # Errors
@@ -39,8 +39,8 @@ pub fn add_size(
     Ok((vec![Edit::Put(Entity::Size(size))], id))
 }
 
-/// Plans to remove a size; the values of other parts for it wait for its return. If it was the base size, the
-/// first of the others becomes the base size.
+/// Plans to remove a size. Values that numbers have for this size stay, and are valid again if the size comes
+/// back. If it was the base size, the first other size becomes the base size.
 ///
 /// # Errors
 /// The size is missing.
@@ -48,7 +48,8 @@ pub fn remove_size(evaluation: &Evaluation, size: SizeId) -> Result<Vec<Edit>, E
     remove::remove_parts(evaluation, &[size.into()])
 }
 
-/// Plans to set a measurement of a size (m) or (rad), or to remove it from the table of the size.
+/// Plans to set a measurement of a size (m) or (rad), or, without a value, to remove it from the size's
+/// table.
 ///
 /// # Errors
 /// The size is missing, or has no such measurement to remove; the name is not that of a measurement; the
@@ -82,8 +83,8 @@ pub fn set_measurement(
     Ok(vec![Edit::Put(Entity::Size(Arc::new(changed)))])
 }
 
-/// Plans to add a variable; returns the variable too. Without a name it is called `v1`, `v2`, ... Formulas
-/// that name a variable with this name, and found none, refer to it from now on.
+/// Plans to add a variable; returns the variable too. Without a name the variable is called `v1`, `v2`, ...
+/// Formulas in which its name stood for no part refer to the variable afterwards.
 ///
 /// # Errors
 /// The name is taken, is the name of a measurement or is not allowed; the number has no value.
@@ -115,7 +116,7 @@ fn head(evaluation: &Evaluation) -> Head {
     }
 }
 
-/// Plans to make a size the base size; without a choice the first size is used.
+/// Plans to make a size the base size. `None`: the first size is used.
 ///
 /// # Errors
 /// The size is missing.
@@ -135,7 +136,7 @@ pub fn set_base_size(
     }))])
 }
 
-/// Plans to show lengths in another unit; no length changes.
+/// Plans to show lengths in another unit; the lengths themselves stay.
 pub fn set_unit(evaluation: &Evaluation, unit: DisplayUnit) -> Vec<Edit> {
     vec![Edit::Put(Entity::Head(Head {
         unit,

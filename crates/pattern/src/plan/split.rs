@@ -16,21 +16,21 @@ use std::sync::Arc;
 /// Request to split a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplitWish {
-    /// The line that the cut starts and ends on.
+    /// The line on which the cut starts and ends.
     pub line: LineName,
-    /// The curve of the cut, from the line to the line.
+    /// The curve of the cut, which starts and ends on the line.
     pub curve: CurveId,
-    /// Whether both sides are sewn together again.
+    /// Whether both sides are sewn together again along the cut.
     pub joined: Joined,
 }
 
-/// Whether both sides of a split are sewn together again.
+/// Whether both sides of a split panel are sewn together again along the cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Joined {
-    /// Sewn by seams along the cut, one for each copy and half.
+    /// The sides are sewn by seams along the cut, one seam for each copy and half.
     #[default]
     Sewn,
-    /// Not sewn.
+    /// The sides are not sewn together.
     Apart,
 }
 
@@ -43,12 +43,12 @@ pub struct SplitPanel {
     pub sides: [PanelId; 2],
 }
 
-/// Plans to split a panel: its sides are panels of its fabric, with its number of copies and its folds; its
-/// seams now sew the sides.
+/// Plans to split a panel. Its two sides become panels with its fabric, its number of copies and its folds;
+/// seams of the panel then sew the sides.
 ///
 /// # Errors
-/// The panel is missing or cannot be drawn; it cannot be split so, or a seam follows it in more than two
-/// stretches: for the reason in the message.
+/// The panel is missing or cannot be drawn; it cannot be split like this, or a span of a seam would be
+/// divided into more than two stretches (the message gives the reason).
 pub fn split_panel(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -122,7 +122,8 @@ fn cut_corner(by: OperationId, index: u16) -> CornerName {
     }
 }
 
-/// A side with the folds of its panel; of a fold that the cut divides, it gets the stretch on its side.
+/// A side panel with the folds of its panel. If the cut divides a fold, the side has the stretch of the fold
+/// on it.
 fn with_folds(
     split: &Evaluation,
     (owner, by): (&Panel, OperationId),
@@ -165,14 +166,14 @@ fn with_folds(
 
 /// Transfers seams from a panel to its sides.
 struct Mover<'m> {
-    /// Evaluation of the pattern with the sides.
+    /// Evaluation of the pattern that has the sides already.
     evaluation: &'m Evaluation,
     split: &'m SplitPanel,
     panel: &'m Panel,
 }
 
 impl Mover<'_> {
-    /// A seam transferred to the sides; none if it does not sew the panel.
+    /// A seam transferred to the sides. `None`: the seam does not sew the panel.
     fn seam(&self, seam: &Seam) -> Result<Option<Seam>, EditError> {
         let mut changed = seam.clone();
         let mut is_moved = false;
@@ -200,7 +201,7 @@ impl Mover<'_> {
         Ok(is_moved.then_some(changed))
     }
 
-    /// The spans of the sides that together cover a span of the panel.
+    /// The spans of the side panels that together cover a span of the panel.
     fn span(&self, span: &Span) -> Option<Vec<Span>> {
         let whole = self.length(self.panel.id, span)?;
         let same = |length: f64| (length - whole).abs() <= 1e-8;
@@ -233,7 +234,7 @@ impl Mover<'_> {
         None
     }
 
-    /// Length of a span on its panel before unfolding (m); none if it has no position.
+    /// Length of a span on its panel before unfolding (m). `None`: the span has no position.
     fn length(&self, panel: PanelId, span: &Span) -> Option<f64> {
         let pattern = self.evaluation.pattern();
         let owner = pattern.panel(panel)?;
@@ -257,7 +258,7 @@ impl Mover<'_> {
         Some(stage.stretch_length(0, &stretch))
     }
 
-    /// The seams along the cut, one for each copy and half.
+    /// The edits that add the seams along the cut, one for each copy and half.
     fn joined(&self, line: LineName, ids: &mut Ids) -> Vec<Edit> {
         let pattern = self.evaluation.pattern();
         let [left, right] = self.split.sides;

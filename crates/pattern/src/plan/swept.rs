@@ -5,15 +5,15 @@ use super::impossible;
 use super::typed::number_text;
 use crate::{EditError, Evaluation, Formula, Number, Want};
 
-/// Text before and after the angle in the formula of a bulge.
+/// Text before and after the angle in a formula for a bulge.
 const AROUND: [&str; 2] = ["tan((", ") / 4)"];
-/// Text before and after the bulge in the formula of an angle.
+/// Text before and after the bulge in a formula for an angle.
 const AROUND_BULGE: [&str; 2] = ["4 * atan2(", ", 1)"];
 
-/// The bulge of an arc that sweeps an angle (rad), positive counter-clockwise.
+/// The bulge of an arc that sweeps the angle `angle` (rad), positive counter-clockwise.
 ///
 /// # Errors
-/// The angle is a full turn or more, or has no value.
+/// The angle is zero, a full turn or more, or has no value.
 pub fn bulge_of(evaluation: &Evaluation, angle: &Number) -> Result<Number, EditError> {
     let value = evaluation.number(angle, Want::Angle);
     let value = value.ok_or_else(|| impossible("the angle has no value", "type an angle"))?;
@@ -34,7 +34,7 @@ pub fn bulge_of(evaluation: &Evaluation, angle: &Number) -> Result<Number, EditE
     formula(evaluation, &text)
 }
 
-/// The angle that an arc of a bulge sweeps (rad).
+/// The angle (rad) that an arc with this bulge sweeps.
 pub fn angle_of(evaluation: &Evaluation, bulge: &Number) -> Number {
     if let Number::Value(value) = bulge {
         return Number::Value(4.0 * value.atan());
@@ -47,7 +47,8 @@ pub fn angle_of(evaluation: &Evaluation, bulge: &Number) -> Number {
     formula(evaluation, &text).unwrap_or_else(|_| bulge.clone())
 }
 
-/// The inner text between a prefix and a suffix whose parentheses match each other.
+/// The text between a prefix and a suffix. `None`: prefix or suffix is missing, or the parentheses between them
+/// do not match.
 fn between<'t>(text: &'t str, [start, end]: [&str; 2]) -> Option<&'t str> {
     let inner = text.strip_prefix(start)?.strip_suffix(end)?;
     let mut depth = 0_i32;

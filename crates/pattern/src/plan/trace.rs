@@ -16,17 +16,17 @@ use toile_geometry::Vec2;
 /// Seam allowance of the first panel of a pattern (m): what most home patterns have.
 const ALLOWANCE: f64 = 0.01;
 
-/// Name and fabric of a new panel. It takes the seam allowance of the panel before it in the pattern, 1 cm if
-/// it is the first.
+/// Name and fabric of a new panel. The panel gets the seam allowance of the panel before it in the pattern;
+/// the first panel gets 1 cm.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct NewPanel<'a> {
-    /// Name of the panel; none proposes the name of its sheet.
+    /// Name of the panel. `None`: the name of its sheet, with a number if it is taken.
     pub name: Option<&'a str>,
-    /// Fabric of the panel; none takes the first fabric of the pattern, or poplin if it has no fabric.
+    /// Fabric of the panel. `None`: the first fabric of the pattern, or poplin if the pattern has no fabric.
     pub fabric: Option<FabricId>,
 }
 
-/// Treatment of closed lines inside a face.
+/// Treatment of closed lines inside a face of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Holes {
     /// The lines are cut out as holes.
@@ -37,11 +37,11 @@ pub enum Holes {
 }
 
 /// Plans to trace a panel round a closed chain of a sheet; returns the panel too. The outline runs
-/// counter-clockwise whatever the direction of the chain; edges are named after their curves.
+/// counter-clockwise in any case; edges are named after their curves.
 ///
 /// # Errors
-/// The chain is missing, is open, follows two curves at once or encloses nothing; the name is taken or not
-/// allowed; the fabric is missing.
+/// A part of the chain is missing; the chain is open, follows two curves at once or encloses nothing; the
+/// name is taken or not allowed; the fabric is missing.
 pub fn trace_panel(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -53,8 +53,8 @@ pub fn trace_panel(
     traced(evaluation, sheet, &[outline], new)
 }
 
-/// Plans to trace the panel round a point of a sheet (m): the smallest closed line of curves round it, cut at
-/// the points that lie on them; returns the panel too.
+/// Plans to trace the panel round a point of a sheet (m): its outline is the smallest closed line round the
+/// point, made of curves cut at the points that lie on them. Returns the panel too.
 ///
 /// # Errors
 /// No closed line goes round the point, or the point lies on a curve; two curves cross there without a point
@@ -76,13 +76,12 @@ pub fn trace_face(
 }
 
 /// Plans to add a hole or an internal line to a panel, along a chain of its sheet; returns the line too.
-/// Holes run clockwise whatever the direction of the chain. Without a name the line is named after its kind.
-/// A chain of a sheet that lies on a stage of the panel is inserted right after that stage, by an operation
-/// that inserts the sheet.
+/// Holes run clockwise in any case. Without a name the line is named after its kind. If the chain is on a
+/// sheet that lies on a stage of the panel, an operation right after that stage inserts the sheet's lines.
 ///
 /// # Errors
-/// The chain is missing or follows two curves at once; a hole is open or encloses nothing; the kind is an
-/// outline; the name is taken or not allowed.
+/// A part of the chain is missing, or the chain follows two curves at once; a hole is open or encloses
+/// nothing; the kind is an outline; the name is taken or not allowed.
 pub fn add_line(
     evaluation: &Evaluation,
     panel: PanelId,
@@ -118,7 +117,7 @@ pub fn add_line(
 }
 
 /// Plans to remove a hole or an internal line from a panel; curves and points stay on the sheet. Marks on the
-/// line wait for its return.
+/// line stay, and are valid again if the line comes back.
 ///
 /// # Errors
 /// The line is missing, or is the outline.
@@ -137,7 +136,7 @@ pub fn remove_line(
     Ok(vec![Edit::Put(Entity::Panel(Arc::new(changed)))])
 }
 
-/// Plans a panel with an outline and holes.
+/// Plans to add a panel whose outline and holes follow these stretches.
 fn traced(
     evaluation: &Evaluation,
     sheet: SheetId,
@@ -179,7 +178,7 @@ fn panel_name(
     }
 }
 
-/// The fabric of a new panel, with the edits that add it if the pattern has none yet.
+/// The fabric of a new panel, and the edits that add it if the pattern has no fabric yet.
 fn fabric(
     pattern: &Pattern,
     wish: Option<FabricId>,
@@ -226,7 +225,7 @@ fn line(
     })
 }
 
-/// Refuses edits that give a panel new faults.
+/// Refuses edits after which a panel has a fault that it did not have before.
 fn refuse_undrawn(
     evaluation: &Evaluation,
     edits: &[Edit],

@@ -8,13 +8,13 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use toile_geometry::Vec2;
 
-/// A point this near to its goal counts as being there (m).
+/// Largest distance from its goal at which a point counts as having reached it (m).
 const THERE: f64 = 1e-9;
 
 /// An affine map of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
-    /// Images of the unit vectors along x and y, plain.
+    /// Images of the unit vectors along x and y (1).
     pub axes: [Vec2; 2],
     /// Image of the origin (m).
     pub origin: Vec2,
@@ -29,7 +29,7 @@ impl Affine {
         }
     }
 
-    /// Translation by a vector (m).
+    /// Translation by the vector `by` (m).
     pub fn translation(by: Vec2) -> Self {
         Self {
             axes: [Vec2::x(), Vec2::y()],
@@ -37,7 +37,7 @@ impl Affine {
         }
     }
 
-    /// Rotation about a point (m) by an angle (rad), counter-clockwise.
+    /// Rotation about the point `about` (m) by an angle, counter-clockwise (rad).
     pub fn rotation(about: Vec2, angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();
         Self::about(about, [Vec2::new(cos, sin), Vec2::new(-sin, cos)])
@@ -50,12 +50,12 @@ impl Affine {
         Self::about(a, [flip(Vec2::x()), flip(Vec2::y())])
     }
 
-    /// Scaling about a point (m), along x and along y by plain factors.
+    /// Scaling about the point `about` (m) by factors along x and along y (1).
     pub fn scaling(about: Vec2, [x, y]: [f64; 2]) -> Self {
         Self::about(about, [Vec2::x() * x, Vec2::y() * y])
     }
 
-    /// The composition: first another map, then this one.
+    /// The map that applies `first` and then this map.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         let turned = |v: Vec2| self.axes[0] * v.x + self.axes[1] * v.y;
@@ -65,7 +65,7 @@ impl Affine {
         }
     }
 
-    /// The point whose image is a given point (m); not finite if the map flattens the plane.
+    /// The point that this map takes to `image` (m); not finite if the map flattens the plane.
     pub fn source(&self, image: Vec2) -> Vec2 {
         let [x, y] = self.axes;
         let way = image - self.origin;
@@ -73,7 +73,7 @@ impl Affine {
         Vec2::new(way.perp(&y), x.perp(&way)) / area
     }
 
-    /// The image of a point (m).
+    /// The point to which this map takes `place` (m).
     pub fn apply(&self, place: Vec2) -> Vec2 {
         self.origin + self.axes[0] * place.x + self.axes[1] * place.y
     }
@@ -82,18 +82,18 @@ impl Affine {
 /// Result of moving many points.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Moved {
-    /// The edits.
+    /// Edits that move the points.
     pub edits: Vec<Edit>,
-    /// Points that do not reach their goals: they are determined by other points, or are held to a line or a
-    /// curve and move as near as it allows.
+    /// Points that do not reach their goals, because other points determine them, or because they are bound
+    /// to a line or a curve and move on it as near as possible.
     pub held: Vec<PointId>,
 }
 
-/// Plans to map points by an affine map. A point that reaches its goal because the points it is constructed
-/// from are moved too is left as it is.
+/// Plans to move points by an affine map. A point that reaches its goal only because the points that it is
+/// constructed from are moved keeps its own numbers.
 ///
 /// # Errors
-/// A point is missing or cannot be drawn; the map is not finite; no point can move.
+/// A point is missing or cannot be drawn; the map is not finite; none of the points can move.
 pub fn transform_points(
     evaluation: &Evaluation,
     points: &[PointId],
@@ -107,10 +107,10 @@ pub fn transform_points(
     move_points(evaluation, &goals?)
 }
 
-/// Plans to move points, each to its own goal (m); see [`transform_points`].
+/// Plans to move points, each to a goal of its own (m); see [`transform_points`].
 ///
 /// # Errors
-/// A point is missing or cannot be drawn; a goal is not finite; no point can move.
+/// A point is missing or cannot be drawn; a goal is not finite; none of the points can move.
 pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result<Moved, EditError> {
     let mut ordered: Vec<(Option<u32>, PointId, Vec2)> = Vec::new();
     for &(id, goal) in goals {
@@ -118,7 +118,7 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
         lookup::place(evaluation, id)?;
         ordered.push((evaluation.rank(Node::Point(id)), id, goal));
     }
-    // Points are sorted after those they are constructed from.
+    // Each point comes after the points that it is constructed from.
     ordered.sort_by_key(|(rank, id, _)| (*rank, *id));
     let points: Vec<PointId> = goals.iter().map(|goal| goal.0).collect();
     let mut pattern = evaluation.pattern().clone();
@@ -127,7 +127,7 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     let mut first_refusal = None;
     let mut pending = ordered;
     while !pending.is_empty() {
-        // Points that depend on others of these are moved after them.
+        // Points that depend on other points in the list are moved after these.
         let mut dependants = HashSet::new();
         let mut later = Vec::new();
         let mut edits = Vec::new();
@@ -162,7 +162,7 @@ pub fn move_points(evaluation: &Evaluation, goals: &[(PointId, Vec2)]) -> Result
     }
 }
 
-/// The edit that moves one point to its goal; none if it is there.
+/// The edit that moves a point to its goal. `None`: the point is there already.
 fn step(work: &Evaluation, id: PointId, goal: Vec2) -> Result<Option<Edit>, EditError> {
     let (sheet, found) = lookup::point(work.pattern(), id)?;
     let now = lookup::place(work, id)?;

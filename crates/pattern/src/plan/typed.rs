@@ -5,12 +5,12 @@ use super::impossible;
 use crate::formula::Operation;
 use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
 
-/// Decimals of a value, in its unit: finer than any pattern needs, and few enough that rounding errors in the
-/// last bits do not show.
+/// Decimals of a value in its unit. They are finer than any pattern needs, and few enough to hide rounding
+/// errors in the last bits.
 const DECIMALS: usize = 9;
-/// Most decimals of a value that someone typed, in its unit: they are shown as typed.
+/// Most decimals, in the value's unit, with which a value counts as typed: it is then shown as it was typed.
 const TYPED: usize = 6;
-/// Tolerance of a value from its typed decimals (of its unit).
+/// Largest difference between a value and its typed decimals, in the value's unit.
 const SAME: f64 = 1e-9;
 
 impl DisplayUnit {
@@ -35,10 +35,10 @@ impl DisplayUnit {
     }
 }
 
-/// The number that a text stands for where a quantity is wanted. A number without unit is in the document's
-/// unit if a length is wanted, and in degrees if an angle is; it becomes a value, as does a single number
-/// with a unit. Everything else stays a formula, in which a number without unit beside a length or an angle
-/// gets a unit.
+/// The number that a text stands for in a field for the quantity `want`. A number without unit is in the
+/// document's unit if the field holds a length, and in degrees if it holds an angle; it becomes a value, and
+/// so does a single number with a unit. Any other text becomes a formula, in which a number without unit
+/// beside a length or an angle gets a unit.
 ///
 /// # Errors
 /// The text is not a formula; it names a part that is missing.
@@ -81,7 +81,8 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
             .collect::<Vec<_>>()[..],
         [Operation::Constant(_)] | [Operation::Constant(_), Operation::Negate]
     );
-    // In a field of any quantity a number with a unit stays a formula, since a value there is a plain number.
+    // In a field for any quantity a number with a unit stays a formula, since a value in such a field is a
+    // plain number.
     let want = match want {
         Want::Any if !is_bare(text) => return Ok(number),
         Want::Any => Want::Plain,
@@ -91,8 +92,8 @@ pub fn read_number(evaluation: &Evaluation, text: &str, want: Want) -> Result<Nu
     Ok(value.map_or(number, Number::Value))
 }
 
-/// A length in the document's unit, in metres (m). Digits that stand alone are read with the unit as their
-/// exponent, so that 12.3 cm is 0.123 m to the bit, as in files.
+/// A length typed in the document's unit, in metres (m). Digits alone are read with the unit as their decimal
+/// exponent, so that 12.3 cm is 0.123 m to the last bit, as in files.
 fn in_metres(text: &str, value: f64, unit: DisplayUnit) -> f64 {
     let exponent = match unit {
         DisplayUnit::Millimetre => -3,
@@ -104,7 +105,7 @@ fn in_metres(text: &str, value: f64, unit: DisplayUnit) -> f64 {
     shifted.unwrap_or(value * unit.metres())
 }
 
-/// Whether a text has neither units nor functions: exponents are its only letters.
+/// Whether a text has no units and no functions: its only letters are those of exponents.
 fn is_bare(text: &str) -> bool {
     let mut before = ' ';
     text.chars().all(|c| {
@@ -114,7 +115,7 @@ fn is_bare(text: &str) -> bool {
     })
 }
 
-/// Refuses names of missing parts. Words are accepted: they may be measurements of some table.
+/// Refuses names of missing parts. Other words are accepted: they may be measurements in a table.
 fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
     let mut unknown = formula.tokens().iter().filter_map(|token| match token {
         Token::Part(PartReference::Unknown(text)) => Some(text),
@@ -129,19 +130,19 @@ fn refuse_unknown(formula: &Formula) -> Result<(), EditError> {
     }
 }
 
-/// The text of a number so that it can be typed again and used in formulas: a formula with current names, a
-/// value with its unit, the value for the current size if sizes have their own.
+/// The text of a number, which can be typed again and used in formulas: a formula with current names, a value
+/// with its unit, or the value for the current size if sizes have their own.
 pub fn number_text(evaluation: &Evaluation, number: &Number, want: Want) -> String {
     text(evaluation, (number, want), exact)
 }
 
-/// The text of a number for display: as [`number_text`], but a computed value is rounded to a hundredth of a
-/// millimetre, or of a degree.
+/// The text of a number for display: like [`number_text`], but a computed value is rounded to a hundredth of
+/// a millimetre or of a degree.
 pub fn number_shown(evaluation: &Evaluation, number: &Number, want: Want) -> String {
     text(evaluation, (number, want), shown)
 }
 
-/// Function that writes a value in its unit, given the number of decimals needed.
+/// Function that writes a value in its unit; it also gets the number of decimals needed.
 type Digits = fn(f64, usize) -> String;
 
 fn exact(value: f64, _: usize) -> String {
@@ -163,7 +164,7 @@ fn text(evaluation: &Evaluation, (number, want): (&Number, Want), digits: Digits
     match number {
         Number::Value(value) => value_text(evaluation, (*value, want), digits),
         Number::Formula(formula) => formula.text(names),
-        // An exact text: typed again it gives the same formula and adjustment.
+        // The text is exact: if it is typed again it gives the same formula and adjustment.
         Number::Adjusted { formula, by } => {
             let sign = if *by < 0.0 { '-' } else { '+' };
             let by = value_text(evaluation, (by.abs(), want), exact);

@@ -15,31 +15,32 @@ pub(crate) struct DartMouth {
     pub intake: f64,
     pub apex: DartApex,
     pub pressed: Pressed,
-    /// Whether the edge runs on smoothly across the mouth.
+    /// Whether the dart is trued: the edge is made smooth across its closed mouth.
     pub trued: bool,
 }
 
-/// The end of a dart inside the panel.
+/// The end of a dart inside the panel (its point), with its number evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum DartApex {
-    /// At this distance from the middle of the mouth, square to it (m).
+    /// The apex lies at this distance from the middle of the mouth, square to the mouth (m).
     Depth(f64),
-    /// At a point (m).
+    /// The apex lies at this point (m).
     Point(Vec2),
 }
 
 /// Reason why a dart cannot be taken out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum DartError {
-    /// The line is missing.
+    /// The line, or the place on it, does not exist on the stage.
     Place(PlaceError),
-    /// The width is negative, or the dart does not fit on its edge.
+    /// The width is negative, or larger than the edge has room for.
     TooWide,
-    /// Another dart is there.
+    /// Another dart lies at the same place.
     Overlaps,
 }
 
-/// Takes a dart out of a stage. A dart of width 0 takes nothing out: both ends of its mouth are one corner.
+/// Takes a dart out of a stage. With width 0 no cloth is taken out, and both ends of the mouth are one
+/// corner.
 pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartError> {
     let turn = stage.turn();
     let mut result = stage.clone();
@@ -57,7 +58,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     let pieces: Vec<usize> = (0..line.edges.len())
         .filter(|&k| line.edges[k].name == dart.middle.edge)
         .collect();
-    // Length of the named edge, mouths of other darts included.
+    // Length of the whole named edge, including mouths of other darts.
     let covered = |k: &usize| (line.edges[*k].to - line.edges[*k].from).abs();
     let has_middle = |k: &usize| {
         let edge = &line.edges[*k];
@@ -151,7 +152,7 @@ pub(crate) fn cut_dart(stage: &Stage, dart: &DartMouth) -> Result<Stage, DartErr
     Ok(result)
 }
 
-/// Puts both ends of a mouth of width 0 at one position on a line (m).
+/// Adds a dart's mouth of width 0: both of its ends are named at one position on a line (m).
 pub(super) fn shut_mouth(line: &mut StageLine, by: OperationId, along: f64) {
     let at = line.divide(along);
     for end in 0..2 {
@@ -194,7 +195,7 @@ pub(super) fn legs(by: OperationId, [open, close]: [Vec2; 2], apex: Vec2) -> [St
     })
 }
 
-/// The part of an edge between two shares of its named edge.
+/// The part of a stage edge between two shares of its named edge, moved to start and end at the given points.
 pub(super) fn part(edge: &StageEdge, from: f64, to: f64, [start, end]: [Vec2; 2]) -> StageEdge {
     let parameter = |share: f64| parameter(edge, share);
     let curve = edge.curve.between(parameter(from), parameter(to));

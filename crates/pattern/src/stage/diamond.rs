@@ -4,9 +4,9 @@ use super::{NOTHING, Stage, StageDart, StageEdge, StageLine};
 use crate::{EdgeCorner, LineKind, Name, OperationId, Pressed, Role};
 use toile_geometry::{Curve, Vec2};
 
-/// Takes a dart with two points out of a stage, as a hole: legs 0 and 1 from the first end to the second on
-/// one side, 2 and 3 back on the other. A dart of width 0 takes nothing out. None if the width is negative or
-/// the dart has no length.
+/// Takes a dart with two points out of a stage, as a hole. Its legs 0 and 1 lead from the first point to the
+/// second on one side, 2 and 3 back on the other side. With width 0 no cloth is taken out. `None`: the width
+/// is negative or the dart has no length.
 pub(crate) fn cut_diamond(
     stage: &Stage,
     by: OperationId,

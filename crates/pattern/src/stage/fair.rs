@@ -1,73 +1,74 @@
 //! The stretches of an edge between darts, redrawn so that the edge is smooth once the darts are closed:
 //! straight if possible, else with the least additional bending.
 //!
-//! With w the displacement square to the edge as drawn, along its length s, the additional bending is the
-//! integral of w''(s)^2. It is least for a cubic spline that is free at the darts except for the turn which
-//! removes the kink (Holladay 1957).
+//! Let w be the displacement of the edge square to its drawn shape, as a function of its length s. The
+//! additional bending is the integral of w''(s)^2. It is least for a cubic spline which is free at the darts,
+//! except that it must turn there by the angle of the kink to be removed (Holladay 1957).
 
 use super::motion::{Motion, turned};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use toile_geometry::{Curve, Vec2};
 
-/// A dart between two stretches.
+/// A dart of a row: it lies between two stretches of the edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closing {
     /// Apex of the dart (m).
     pub apex: Vec2,
-    /// Ends of the legs: the end of the stretch before the dart and the start of the stretch after it (m).
+    /// Ends of the two legs at the mouth: where the stretch before the dart ends and the stretch after it
+    /// starts (m).
     pub ends: [Vec2; 2],
 }
 
-/// Stretches of an edge, and the darts between them.
+/// Row of darts: consecutive darts in one edge, and the stretches of the edge before, between and after them.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
-    /// Curves of each stretch; there is one stretch more than darts.
+    /// Curves of each stretch; there is one stretch more than there are darts.
     pub stretches: Vec<Vec<Curve>>,
     pub closings: Vec<Closing>,
-    /// Whether the directions at the start and at the end of the row stay fixed.
+    /// Whether the edge keeps its direction at the start and at the end of the row.
     pub keeps: [bool; 2],
 }
 
-/// A row redrawn.
+/// Result of redrawing the edge of a row.
 #[derive(Clone, Debug)]
 pub(super) struct Redrawn {
-    /// New curves, one for each curve of the row.
+    /// New curves of each stretch, one for each curve before.
     pub stretches: Vec<Vec<Curve>>,
-    /// Ends of each dart's legs (m).
+    /// New ends of each dart's two legs (m).
     pub ends: Vec<[Vec2; 2]>,
 }
 
-/// Reason why a row is not redrawn.
+/// Reason why the edge of a row cannot be redrawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NotTrued {
-    /// No line leads across the darts.
+    /// No smooth line leads across the darts.
     NoLine,
-    /// Legs would become longer or shorter than [`MAX_GROWTH`] allows.
+    /// Some leg would become longer or shorter than [`MAX_GROWTH`] allows.
     TooFar,
 }
 
 /// Greatest factor by which a leg may become longer or shorter (1). If the apex of a dart lies near its edge,
-/// the ends of its legs would move far along them, and the smooth line across the dart would have little in
-/// common with the edge as drawn.
+/// a smooth line across the dart would move the ends of its legs far, and the edge would have little in
+/// common with its drawn shape.
 pub(crate) const MAX_GROWTH: f64 = 2.0;
-/// Angles and lengths that differ by less than this count as the same (rad), (m).
+/// Differences of angles (rad) and lengths (m) below this count as zero.
 const SAME: f64 = 1e-9;
-/// Least length of a handle, as a share of the chord, at an end that is turned (1).
+/// Least length of a handle, over the length of the chord, at an end whose direction is turned (1).
 const SHORTEST_HANDLE: f64 = 0.05;
 
 impl Closing {
-    /// Unit direction of a leg from the apex, and its length (m).
+    /// Unit vector along a leg, from the apex, and the length of the leg (m).
     fn leg(&self, k: usize) -> Option<(Vec2, f64)> {
         let leg = self.ends[k] - self.apex;
         Some((leg.try_normalize(1e-12)?, leg.norm()))
     }
 
-    /// The angle by which the second leg is turned onto the first (rad).
+    /// Angle by which the second leg is turned about the apex to lie on the first (rad).
     fn angle(&self) -> Option<f64> {
         Some(between(self.leg(1)?.0, self.leg(0)?.0))
     }
 
-    /// Angle by which the edge turns at the closed dart (rad).
+    /// Angle by which the edge turns at the dart once the dart is closed (rad).
     pub fn kink(&self, before: &[Curve], after: &[Curve]) -> Option<f64> {
         Some(between(
             arriving(before)?,
@@ -77,7 +78,7 @@ impl Closing {
 }
 
 impl Row {
-    /// Whether the row is smooth as drawn.
+    /// Whether the edge is smooth already once the darts are closed, with legs of equal lengths.
     pub fn is_smooth(&self) -> bool {
         self.closings.iter().enumerate().all(|(k, closing)| {
             let kink = closing.kink(&self.stretches[k], &self.stretches[k + 1]);
@@ -86,7 +87,7 @@ impl Row {
         })
     }
 
-    /// Whether every stretch is one straight line.
+    /// Whether each stretch of the row is one straight line.
     pub fn is_straight(&self) -> bool {
         self.stretches.iter().all(|stretch| {
             let lines = stretch.iter().all(|c| matches!(c, Curve::Line { .. }));
@@ -96,10 +97,10 @@ impl Row {
         })
     }
 
-    /// Redraws the row.
+    /// Redraws the edge so that it is smooth once the darts are closed.
     ///
     /// # Errors
-    /// No line leads across the darts, or only one far from the edge as drawn.
+    /// No smooth line leads across the darts, or only one that is far from the edge as drawn.
     pub fn redrawn(&self) -> Result<Redrawn, NotTrued> {
         let straight = match self.is_straight() && self.keeps == [false; 2] {
             true => self.straight(),
@@ -118,7 +119,7 @@ impl Row {
         }
     }
 
-    /// Redraws the row along the straight line between its ends with all darts closed.
+    /// Redraws the edge along the straight line that joins its ends when all darts are closed.
     fn straight(&self) -> Option<Redrawn> {
         let mut motion = Motion::NONE;
         let mut folds = Vec::with_capacity(self.closings.len());
@@ -163,8 +164,8 @@ impl Row {
         })
     }
 
-    /// Redraws the row with the least additional bending. The end of a straight row turns freely unless its
-    /// direction is fixed.
+    /// Redraws the edge with the least additional bending. At an end of a row of straight stretches the
+    /// direction is free, unless it must be kept.
     fn bent(&self) -> Option<Redrawn> {
         let is_straight = self.is_straight();
         let frees = self.keeps.map(|keeps| is_straight && !keeps);
@@ -197,14 +198,14 @@ impl Row {
 }
 
 impl Closing {
-    /// Both ends of the legs at a distance from the apex (m).
+    /// Ends of both legs if they are `radius` long (m).
     fn at(&self, radius: f64) -> Option<[Vec2; 2]> {
         let [a, b] = [self.leg(0)?.0, self.leg(1)?.0];
         Some([a, b].map(|out| self.apex + out * radius))
     }
 }
 
-/// A number that is an affine function of the unknowns: a constant, and factors of some unknowns.
+/// A number that is an affine function of the unknowns: a constant, and the factors of some of the unknowns.
 #[derive(Clone, Debug, Default)]
 struct Affine {
     constant: f64,
@@ -225,7 +226,7 @@ impl Affine {
     }
 }
 
-/// An end of a stretch: its displacement (m) and its turn (rad).
+/// An end of a stretch: displacement square to the stretch (m) and turn of its direction (rad).
 #[derive(Clone, Debug, Default)]
 struct Knot {
     height: Affine,
@@ -238,8 +239,8 @@ impl Knot {
     }
 }
 
-/// The bending of a row as a function of its unknowns: length of the legs and turn of the edge at each dart,
-/// then the turns of free ends.
+/// The additional bending of a row as a function of unknowns: length of the legs and turn of the edge at each
+/// dart, then the turns of the free ends.
 struct Beam {
     knots: Vec<[Knot; 2]>,
     lengths: Vec<f64>,
@@ -284,12 +285,12 @@ impl Beam {
         })
     }
 
-    /// Solves for the unknowns of least bending.
+    /// Solves for the unknowns with which the additional bending is least.
     fn solve(&self) -> Option<DVector<f64>> {
         let mut matrix = DMatrix::zeros(self.unknowns, self.unknowns);
         let mut right = DVector::zeros(self.unknowns);
         for ([from, to], &l) in self.knots.iter().zip(&self.lengths) {
-            // Matrix of twice the bending energy of a cubic, by heights and slopes at both ends.
+            // Matrix of twice the bending energy of a cubic, for its heights and slopes at both ends.
             let stiffness = [
                 [12.0, 6.0 * l, -12.0, 6.0 * l],
                 [6.0 * l, 4.0 * l * l, -6.0 * l, 2.0 * l * l],
@@ -313,17 +314,17 @@ impl Beam {
     }
 }
 
-/// A stretch displaced by a cubic that has these heights (m) and turns (rad) at its ends.
+/// A stretch that is displaced by a cubic with these heights (m) and turns (rad) at its ends.
 struct Bent<'r> {
     stretch: &'r [Curve],
     heights: [f64; 2],
     turns: [f64; 2],
-    /// Start and end of the stretch if they are at darts (m).
+    /// Exact start and end of the stretch (m), where these are ends of darts' legs.
     ends: [Option<Vec2>; 2],
 }
 
 impl Bent<'_> {
-    /// Height and turn of the cubic at a share of the length.
+    /// Height (m) and turn (rad) of the cubic at a share of its length.
     fn at(&self, share: f64, length: f64) -> (f64, f64) {
         let (t, u) = (share, 1.0 - share);
         let ([h, k], [a, b]) = (self.heights, self.turns.map(|turn| turn * length));
@@ -362,7 +363,8 @@ impl Bent<'_> {
     }
 }
 
-/// A curve moved to new ends, with its directions there turned.
+/// A curve moved to new ends, with its directions at both ends turned by angles (rad). `None`: the curve has
+/// no direction.
 fn bent(curve: Curve, [(start, first), (end, second)]: [(Vec2, f64); 2]) -> Option<Curve> {
     let [near, far] = handles(curve);
     let chord = (curve.end() - curve.start()).norm();
@@ -388,8 +390,8 @@ fn bent(curve: Curve, [(start, first), (end, second)]: [(Vec2, f64); 2]) -> Opti
     })
 }
 
-/// Vectors from both ends to the control points of the cubic that equals the curve; for an arc, of the cubic
-/// with its ends, directions and middle (Goldapp 1991).
+/// Vectors from both ends of a curve to the control points of an equal cubic; for an arc, of the cubic with
+/// the same ends, end directions and middle (Goldapp 1991).
 fn handles(curve: Curve) -> [Vec2; 2] {
     let third = match curve {
         // The arc turns by four times atan(bulge).
@@ -408,7 +410,7 @@ fn length(curves: &[Curve]) -> f64 {
     curves.iter().map(Curve::length).sum()
 }
 
-/// Length before each curve, and the total length.
+/// Length before each of the joined curves, and the length of all (m).
 fn lengths_before(curves: &[Curve]) -> Vec<f64> {
     let mut along = 0.0;
     let mut before = vec![0.0];
@@ -419,21 +421,21 @@ fn lengths_before(curves: &[Curve]) -> Vec<f64> {
     before
 }
 
-/// Unit direction at the start of a row of curves.
+/// Unit vector along joined curves at their start.
 pub(super) fn leaving(curves: &[Curve]) -> Option<Vec2> {
     let first = curves.first()?;
     let own = first.derivative(0.0).try_normalize(1e-12);
     own.or_else(|| (first.point(1e-3) - first.start()).try_normalize(1e-15))
 }
 
-/// Unit direction at the end of a row of curves.
+/// Unit vector along joined curves at their end.
 pub(super) fn arriving(curves: &[Curve]) -> Option<Vec2> {
     let last = curves.last()?;
     let own = last.derivative(1.0).try_normalize(1e-12);
     own.or_else(|| (last.end() - last.point(1.0 - 1e-3)).try_normalize(1e-15))
 }
 
-/// The angle from one direction to another (rad).
+/// Signed angle from one direction to another (rad), positive counter-clockwise.
 pub(super) fn between(from: Vec2, to: Vec2) -> f64 {
     from.perp(&to).atan2(from.dot(&to))
 }

@@ -7,17 +7,17 @@ use super::{
 use crate::{CornerName, LineKind, LineName, NotchId};
 use toile_geometry::{Curve, Vec2};
 
-/// Reason why a stage cannot be unfolded.
+/// Reason why a stage cannot be unfolded along a stretch of its outline.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum FoldError {
-    /// The stretch is not on the outline.
+    /// The stretch that is to lie on the fold is not on the outline.
     Place(PlaceError),
-    /// The stretch is not straight, has no length, or is the whole outline.
+    /// The stretch that is to lie on the fold is not straight, has no length, or is the whole outline.
     NotStraight,
 }
 
-/// A stage joined with its mirror image in a straight stretch of its outline, and the notches that lay on the
-/// stretch and are lost with it.
+/// A stage joined with its mirror image in a straight stretch of its outline; returns also the notches on
+/// that stretch, which the unfolded stage does not have.
 pub(crate) fn unfold(
     stage: &Stage,
     line: LineName,
@@ -68,13 +68,13 @@ pub(crate) fn unfold(
     Ok((whole, lost))
 }
 
-/// Whether a notch is on one of the edges of a fold.
+/// Whether a notch is on one of the edges that lie on the fold.
 fn is_on(folded: &[StageEdge], notch: &StageNotch) -> bool {
     notch.half == 0 && folded.iter().any(|edge| edge.name == notch.edge)
 }
 
-/// Assigns a notch at an end of the fold to the edge that meets the fold there: the other edges of the
-/// outline run from the end of the fold to its start.
+/// Assigns a notch at an end of the fold to the edge that meets the fold there. `edges` are the other edges
+/// of the outline, from the end of the fold to its start.
 fn move_off(notch: &mut StageNotch, edges: &[StageEdge], (start, end): (Vec2, Vec2)) {
     const SAME: f64 = 1e-9;
     let (Some(first), Some(last)) = (edges.first(), edges.last()) else {
@@ -88,7 +88,7 @@ fn move_off(notch: &mut StageNotch, edges: &[StageEdge], (start, end): (Vec2, Ve
     let Some(along) = edge.curve.derivative(at).try_normalize(1e-15) else {
         return;
     };
-    // The cloth lies on the same side of both edges.
+    // The notch points into the cloth, which is on the same side of this edge as of the fold.
     let (left, fold) = (Vec2::new(-along.y, along.x), end - start);
     let side = Vec2::new(-fold.y, fold.x).dot(&notch.inward);
     (notch.edge, notch.share) = (edge.name, share);

@@ -6,14 +6,15 @@ use super::truing::true_darts;
 use super::{NOTHING, Stage};
 use crate::{CornerName, Role};
 
-/// Lengths that differ by less than this count as the same (m).
+/// Largest difference between lengths that count as equal (m).
 const SAME: f64 = 1e-12;
-/// Most steps of the iteration for the width: each gives about 1.6 times as many digits as the one before.
+/// Most steps of the iteration for the width. Each step gives about 1.6 times as many correct digits as the
+/// step before.
 const MAX_STEPS: usize = 40;
 
-/// The width of the mouth (m) with which a trued dart shortens the finished outline by just the wanted
-/// intake, by the secant method; none if there is no such width. For a dart that cannot be trued it is the
-/// intake itself.
+/// Width of the mouth (m) with which a trued dart makes the finished outline shorter by its intake alone,
+/// found by the secant method. `None`: there is no such width. For a dart that cannot be trued, the width is
+/// the intake.
 pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerName]) -> Option<f64> {
     let wanted = finished(stage) - mouth.intake;
     let untrued = stage.as_untrued();
@@ -27,7 +28,7 @@ pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerNam
     let Some(mut beyond_before) = beyond(before) else {
         return Some(mouth.intake);
     };
-    // A wider mouth takes in about as much more.
+    // First guess: the finished outline changes by about as much as the width.
     let mut width = before + beyond_before;
     for _ in 0..MAX_STEPS {
         if beyond_before.abs() <= SAME {
@@ -41,11 +42,11 @@ pub(crate) fn width_kept(stage: &Stage, mouth: &DartMouth, going_on: &[CornerNam
         (before, beyond_before) = (width, beyond_now);
         width -= beyond_now / slope;
     }
-    // As near as floating-point numbers of this size allow.
+    // The result is accepted if it is as near as floating-point numbers of this size allow.
     (beyond_before.abs() <= 1e3 * SAME).then_some(before)
 }
 
-/// Length of an outline with its darts closed (m).
+/// Length of the outline when its darts are closed (m).
 fn finished(stage: &Stage) -> f64 {
     let edges = stage.outline().iter();
     let sewn = edges.filter(|edge| edge.name.role() != Some(Role::Leg));

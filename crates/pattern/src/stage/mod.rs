@@ -51,11 +51,11 @@ use crate::{
 use std::sync::Arc;
 use toile_geometry::{Curve, Vec2};
 
-/// Widths, depths and intakes up to this count as zero (m): differences of two equal lengths leave
-/// rounding errors.
+/// Widths, depths and intakes up to this count as zero (m), since the difference of two equal lengths may
+/// have a rounding error.
 pub(crate) const NOTHING: f64 = 1e-9;
 
-/// A panel after some of its operations.
+/// A stage of a panel: the panel as drawn, or after some of its operations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
     /// Lines of the stage: the outline first, then holes, then internal lines.
@@ -64,18 +64,18 @@ pub struct Stage {
     pub notches: Vec<StageNotch>,
     /// Direction of the warp (rad), from +x counter-clockwise.
     pub grain: f64,
-    /// Darts that were taken out, for their caps.
+    /// Darts that were taken out, for the shape of the cloth at their mouths.
     pub darts: Vec<StageDart>,
-    /// Fold lines along which the stage was unfolded: a point on each and its direction.
+    /// Fold lines along which the stage was unfolded: a point on each (m) and its direction.
     pub folds: Vec<(Vec2, Vec2)>,
     /// Operations that were done, in order.
     pub done: Vec<OperationId>,
-    /// Done operations that left the panel as it was, since they take in nothing.
+    /// Operations that were done but left the panel unchanged, as they take in no cloth.
     pub idle: Vec<OperationId>,
-    /// Left and right side, if the last operation split the stage.
+    /// The stages of the left and right side, if the last operation split the stage.
     pub sides: Vec<Arc<Stage>>,
-    /// Edges of the outline before its darts were trued; from these they are trued again together with the
-    /// next dart. Empty if no dart is trued, or the outline was cut apart since.
+    /// Edges of the outline before its darts were trued. When the next dart is taken out, all darts are trued
+    /// again from these edges. Empty if no dart is trued, or if the outline was cut apart after that.
     pub untrued: Vec<StageEdge>,
 }
 
@@ -84,32 +84,33 @@ pub struct Stage {
 pub struct StageLine {
     /// Name of the line.
     pub name: LineName,
-    /// Half of a folded panel that the line is on: one bit for each fold.
+    /// Half of a folded panel that the line is on: each fold has one bit.
     pub half: u8,
     /// Kind of line.
     pub kind: LineKind,
     /// Edges of the line, in order. An edge that is a spline has several entries.
     pub edges: Vec<StageEdge>,
-    /// The corner at the end of an open line.
+    /// The corner at the end of the line, if it is open.
     pub end: Option<CornerName>,
-    /// Corners at the start of an edge whose start has another name: the corner, and that other name.
+    /// Corners with two names: the second name, and the name that the start of the edge has.
     pub twins: Vec<[CornerName; 2]>,
 }
 
-/// An edge of a stage: one curve, and the stretch of its named edge that it covers.
+/// An edge of a stage: one curve, and the stretch of a named edge that the curve is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageEdge {
-    /// Name of the edge: drawn in the document or made by an operation.
+    /// Name of the edge: of an edge in the document, or made by an operation.
     pub name: EdgeName,
-    /// Half of a folded panel that the edge is on: one bit for each fold.
+    /// Half of a folded panel that the edge is on: each fold has one bit.
     pub half: u8,
-    /// The corner at the start of the edge; none between two curves of one named edge.
+    /// The corner at the start of the edge. `None`: the edge continues another curve of the same named edge.
     pub start: Option<CornerName>,
-    /// Share of the named edge's arc length at the start.
+    /// Share of the named edge's arc length at the start of this edge (1).
     pub from: f64,
-    /// Share at the end; less than `from` if the edge runs against the named edge.
+    /// Share of the named edge's arc length at the end of this edge (1); less than `from` if this edge runs
+    /// against the named edge.
     pub to: f64,
-    /// The curve of the edge, in the direction of the line (m).
+    /// The curve of the edge, directed as the line runs (m).
     pub curve: Curve,
     /// Width of the seam allowance outside the edge (m).
     pub allowance: f64,
@@ -122,9 +123,9 @@ pub struct StageEdge {
 pub struct StageNotch {
     /// The notch of the panel.
     pub id: NotchId,
-    /// The edge it is on.
+    /// Name of the edge that the notch is on.
     pub edge: EdgeName,
-    /// Share of that edge's arc length at the notch.
+    /// Share of that edge's arc length at the notch (1).
     pub share: f64,
     /// Half of a folded panel that the notch is on.
     pub half: u8,
@@ -132,11 +133,11 @@ pub struct StageNotch {
     pub kind: NotchKind,
     /// Position of the notch (m).
     pub point: Vec2,
-    /// Unit direction into the piece.
+    /// Unit vector from the notch into the piece.
     pub inward: Vec2,
 }
 
-/// A dart of a stage.
+/// A dart that was taken out of a stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageDart {
     /// The operation that took the dart out.
@@ -145,13 +146,13 @@ pub struct StageDart {
     pub half: u8,
     /// Start and end of the mouth along the outline (m).
     pub mouth: [Vec2; 2],
-    /// Apex of the dart (m); for a dart with two points the first of them.
+    /// Apex of the dart (m); for a dart with two points, the first of them.
     pub apex: Vec2,
-    /// Point about which the dart is pivoted (m): its apex before that was set back.
+    /// Point about which the dart is pivoted (m): the apex before it was set back.
     pub pivot: Vec2,
     /// The leg towards which the dart is pressed.
     pub pressed: Pressed,
-    /// Whether the edge runs on smoothly across the mouth of the closed dart.
+    /// Whether the dart is trued: the edge is smooth across its closed mouth.
     pub trued: bool,
 }
 
@@ -177,7 +178,7 @@ impl Stage {
         if swept < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// Every number of the stage, for comparison to the bit.
+    /// All numbers of the stage, to compare stages to the last bit.
     fn bits(&self) -> Vec<u64> {
         let mut numbers = vec![self.grain];
         let mut points: Vec<Vec2> = Vec::new();
@@ -201,13 +202,13 @@ impl Stage {
         numbers.into_iter().map(f64::to_bits).collect()
     }
 
-    /// Whether another stage is the same to the bit.
+    /// Whether another stage is equal to the last bit.
     pub fn is_same(&self, other: &Self) -> bool {
         let mut sides = self.sides.iter().zip(&other.sides);
         self == other && self.bits() == other.bits() && sides.all(|(a, b)| a.is_same(b))
     }
 
-    /// The mirror image in the y axis, for the other piece of a pair.
+    /// The stage mirrored in the y axis, for the mirrored piece of a pair.
     #[must_use]
     pub fn mirror_image(&self) -> Self {
         let mirror = (Vec2::zeros(), Vec2::y());
@@ -252,8 +253,8 @@ impl Stage {
 }
 
 impl StageLine {
-    /// The mirror image of the line in another line, wound as before if it is closed; `half` is added to
-    /// its halves.
+    /// The line mirrored in `mirror`. A closed line keeps its direction round the cloth; `half` is added to
+    /// the halves of its edges.
     pub(crate) fn mirrored(&self, mirror: (Vec2, Vec2), half: u8) -> Self {
         let mut edges: Vec<StageEdge> = self.edges.clone();
         if self.kind == LineKind::Internal {
@@ -272,7 +273,7 @@ impl StageLine {
     }
 }
 
-/// Edges mirrored in a line and walked the other way, so that a closed line is wound as before. Corners stay
+/// Edges mirrored in a line and walked the other way, so that a closed line keeps its direction. Corners stay
 /// at their positions: the corner at the end of an edge becomes the corner at its start.
 pub(crate) fn mirrored_edges(
     edges: &[StageEdge],
@@ -302,7 +303,7 @@ pub(crate) fn mirrored_edges(
         .collect()
 }
 
-/// The curve with its ends moved exactly to the given points.
+/// The curve with its ends moved to exactly the given points.
 pub(crate) fn with_ends(curve: Curve, start: Vec2, end: Vec2) -> Curve {
     match curve {
         Curve::Line { .. } => Curve::Line { start, end },

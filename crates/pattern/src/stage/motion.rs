@@ -3,28 +3,28 @@
 use super::{StageDart, StageEdge, StageNotch};
 use toile_geometry::{Curve, Vec2};
 
-/// A vector turned counter-clockwise by an angle (rad).
+/// The vector `v`, turned counter-clockwise by an angle (rad).
 pub(super) fn turned(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
-/// A rigid motion: a turn about the origin, then a shift.
+/// A rigid motion: a turn about the origin, followed by a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
-    /// Angle, counter-clockwise (rad).
+    /// Angle of the turn, counter-clockwise (rad).
     angle: f64,
     shift: Vec2,
 }
 
 impl Motion {
-    /// The identity: leaves points unchanged to the bit.
+    /// The identity: it leaves points unchanged to the last bit.
     pub const NONE: Self = Self {
         angle: 0.0,
         shift: Vec2::new(0.0, 0.0),
     };
 
-    /// The motion with this angle that takes one point to another.
+    /// The motion that turns by `angle` (rad) and takes the point `from` to the point `to`.
     pub fn taking(from: Vec2, to: Vec2, angle: f64) -> Self {
         let turn = Self {
             angle,
@@ -36,12 +36,12 @@ impl Motion {
         }
     }
 
-    /// The turn about a point.
+    /// The turn about a point by an angle (rad).
     pub fn about(centre: Vec2, angle: f64) -> Self {
         Self::taking(centre, centre, angle)
     }
 
-    /// The composition: first another motion, then this one.
+    /// The motion that first does `first` and then this motion.
     pub fn after(self, first: Self) -> Self {
         Self {
             angle: self.angle + first.angle,
@@ -89,7 +89,7 @@ impl Motion {
         }
     }
 
-    /// Moves a dart: the start of its mouth by this motion and the end by another.
+    /// Moves a dart: the start of its mouth by this motion, the end of its mouth by `other`.
     pub fn dart(self, other: Self, dart: StageDart) -> StageDart {
         let [start, end] = dart.mouth;
         StageDart {

@@ -11,7 +11,7 @@ use toile_geometry::{Path, Polygon, Vec2, closest_on_segment};
 pub(crate) enum CutError {
     /// A place is not on the outline.
     Place(PlaceError),
-    /// The stage is already unfolded: a cut on one half would leave the other whole.
+    /// The stage is unfolded already: a cut would divide one half and leave the other half whole.
     Unfolded,
     /// A cut has no length.
     NoLength,
@@ -21,22 +21,23 @@ pub(crate) enum CutError {
     ThroughHole,
 }
 
-/// Positions closer than this count as the same (m).
+/// Largest distance between positions that count as equal (m).
 pub(super) const SAME: f64 = 1e-9;
-/// Distance from its ends within which a cut may touch the outline (m).
+/// Distance from the ends of a cut within which it may touch the outline (m).
 const AT_END: f64 = 1e-6;
-/// Greatest distance of chords from curves when parts are distinguished (m).
+/// Largest distance of chords from curves in the polygons that tell parts apart (m).
 const FLATNESS: f64 = 1e-5;
 
-/// Everything of a stage except the outline that is cut, each with the index of its part.
+/// The lines, notches and darts of a stage that is cut apart, except the outline that is cut; each with the
+/// index of its part.
 pub(super) struct Partition {
     pub lines: Vec<(StageLine, usize)>,
     pub notches: Vec<(StageNotch, usize)>,
-    /// Darts, with the parts that hold the leg before and the leg after the apex.
+    /// Darts, each with the parts that have its leg before and its leg after the apex.
     pub darts: Vec<(StageDart, [usize; 2])>,
 }
 
-/// Index of an outline among the lines of a stage; refused if the stage is unfolded.
+/// Index of the outline with this name among the lines of a stage; refused if the stage is unfolded.
 pub(super) fn outline_of(stage: &Stage, name: LineName) -> Result<usize, CutError> {
     if !stage.folds.is_empty() {
         return Err(CutError::Unfolded);
@@ -47,8 +48,8 @@ pub(super) fn outline_of(stage: &Stage, name: LineName) -> Result<usize, CutErro
 }
 
 impl StageLine {
-    /// Divides the edge at an arc length from the start of a closed line (m), unless an edge starts there;
-    /// returns the index of the edge that starts there.
+    /// Divides an edge of a closed line at an arc length from the start of the line (m), unless an edge
+    /// starts there already; returns the index of the edge that starts there.
     pub(super) fn divide(&mut self, along: f64) -> usize {
         let mut before = 0.0;
         for k in 0..self.edges.len() {
@@ -76,7 +77,8 @@ impl StageLine {
         0
     }
 
-    /// Names the corner at the start of an edge: a second name becomes a twin of the first.
+    /// Names the corner at the start of an edge. If the corner has a name already, the new name is added as a
+    /// twin.
     pub(super) fn call(&mut self, edge: usize, name: CornerName) {
         match self.edges[edge].start {
             Some(known) => self.twins.push([name, known]),
@@ -122,8 +124,8 @@ pub(super) fn check_cut(stage: &Stage, outline: usize, cut: &Path) -> Result<(),
     }
 }
 
-/// Assigns everything to parts: `edges` are the edges of the cut outline with their parts, `rings` the
-/// polygons of the parts. Internal lines are cut where cuts cross them.
+/// Assigns lines, notches and darts to the parts. `edges` are the edges of the cut outline, each with its
+/// part; `rings` are the polygons of the parts. Internal lines are divided where cuts cross them.
 pub(super) fn partition(
     stage: &Stage,
     outline: usize,
@@ -172,7 +174,7 @@ pub(super) fn partition(
     }
 }
 
-/// An internal line, cut where cuts cross it.
+/// An internal line, divided where cuts cross it; each piece has the index of its part.
 fn parts_of_line(line: &StageLine, cuts: &[Path], rings: &[Vec<Vec2>]) -> Vec<(StageLine, usize)> {
     let path = Path::new(line.edges.iter().map(|edge| edge.curve).collect());
     let length = path.length();
@@ -219,7 +221,7 @@ fn parts_of_line(line: &StageLine, cuts: &[Path], rings: &[Vec<Vec2>]) -> Vec<(S
     parts
 }
 
-/// Index of the part that contains a point, else of the nearest one.
+/// Index of the part that contains a point; if no part does, of the part nearest to it.
 fn part_at(rings: &[Vec<Vec2>], at: Vec2) -> usize {
     let inside = rings
         .iter()
@@ -238,7 +240,7 @@ fn part_at(rings: &[Vec<Vec2>], at: Vec2) -> usize {
 }
 
 impl Partition {
-    /// The stage with its new outline, everything else moved with its part.
+    /// The stage with a new outline; all other lines, notches and darts are moved with their parts.
     pub fn moved(
         self,
         stage: &Stage,

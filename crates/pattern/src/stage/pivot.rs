@@ -7,18 +7,18 @@ use super::{Placed, Stage, StageDart, StageEdge, StageLine, with_ends};
 use crate::{LineName, Name, OperationId, Pressed, Role, Turned};
 use toile_geometry::{Curve, Path, Vec2};
 
-/// A pivot with its numbers evaluated.
+/// A pivot operation with its numbers evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pivoting {
     pub by: OperationId,
-    /// The dart.
+    /// The operation that made the dart to be pivoted.
     pub dart: OperationId,
     pub line: LineName,
     /// Position of the new mouth.
     pub mouth: Placed,
-    /// Share of the dart's angle that is moved to the new dart.
+    /// Share of the dart's angle that is moved to the new dart (1).
     pub share: f64,
-    /// Distance by which the apexes of both darts are set back from the pivot point (m).
+    /// Distance from the pivot point at which both darts end after the pivot (m).
     pub back: f64,
     pub turned: Turned,
     pub pressed: Pressed,
@@ -32,17 +32,17 @@ pub(crate) enum PivotError {
     NoMouth,
     /// The share is not between 0 and 1.
     Share,
-    /// The new mouth is on the dart itself.
+    /// The new mouth lies within the dart's own mouth.
     OnDart,
-    /// The legs differ in length, so that the dart does not close.
+    /// The legs of the dart differ in length, so that it does not close.
     LegsDiffer,
-    /// Both darts end in the same point, where the panel would come apart.
+    /// Both darts would end in the same point, where the panel would come apart.
     OnePoint,
-    /// The set-back is longer than a leg, or negative.
+    /// The distance of the dart ends from the pivot point is longer than a leg, or negative.
     TooFarBack,
 }
 
-/// Shares this near to 0 or 1 count as 0 or 1.
+/// Shares of an angle this near to 0 or 1 count as 0 or 1.
 const ROUNDING: f64 = 1e-12;
 
 fn leg(by: OperationId, index: u16) -> crate::EdgeName {
@@ -88,7 +88,7 @@ pub(crate) fn pivot_dart(stage: &Stage, wish: &Pivoting) -> Result<Stage, PivotE
     if count < 4 || line.edges[1].name != leg(wish.dart, 1) {
         return Err(PivotError::NoMouth);
     }
-    // The legs are at 0 and 1, then follows the part from the dart on to the new mouth, then the other.
+    // The edges are: the two legs, the part from the dart to the new mouth, then the other part from `at` on.
     let at = (at + count - first) % count;
     if at < 3 {
         return Err(PivotError::OnDart);
@@ -134,14 +134,14 @@ fn cut_to(edge: &StageEdge, pivot: Vec2) -> Path {
     }])
 }
 
-/// Motions of both parts, and the new positions of both darts.
+/// Motions of both parts of the panel, and the new positions of both darts (m).
 struct Turning {
-    /// Motion of the part from the dart on to the new mouth, and of the other part.
+    /// Motion of the part from the dart to the new mouth, and motion of the other part.
     motions: [Motion; 2],
-    /// Mouth of the dart.
+    /// Ends of the mouth of the old dart (m).
     old: [Vec2; 2],
     old_apex: Vec2,
-    /// The new mouth.
+    /// Ends of the mouth of the new dart (m).
     new: [Vec2; 2],
     new_apex: Vec2,
     closes: bool,
@@ -187,8 +187,8 @@ impl Turning {
         })
     }
 
-    /// The outline after the pivot. In `line` the first two edges are the legs of the dart, and the edge `at`
-    /// starts at the new mouth.
+    /// The outline after the pivot. The first two edges of `line` are the legs of the old dart, and its edge
+    /// `at` starts at the new mouth.
     fn outline(&self, mut line: StageLine, at: usize, wish: &Pivoting) -> StageLine {
         line.call(at, mouth(wish.by, 1));
         let old_mouth = [0, 1].map(|k| mouth(wish.dart, k));
@@ -209,7 +209,7 @@ impl Turning {
         if !self.closes {
             edges.extend([before, after]);
         } else if let Some(first) = from_dart.first_mut() {
-            // The ends of the closed mouth are one corner.
+            // Both ends of the closed mouth are one corner.
             first.curve = with_ends(first.curve, self.old[0], first.curve.end());
             let called = *first.start.get_or_insert(old_mouth[1]);
             let twins = old_mouth.into_iter().filter(|corner| *corner != called);
@@ -245,7 +245,7 @@ fn straight(start: Vec2, end: Vec2) -> Curve {
     Curve::Line { start, end }
 }
 
-/// Moves the ends of a row of edges exactly to the given points.
+/// Moves the ends of joined edges to exactly the given points.
 fn join(edges: &mut [StageEdge], start: Vec2, end: Vec2) {
     if let Some(first) = edges.first_mut() {
         first.curve = with_ends(first.curve, start, first.curve.end());

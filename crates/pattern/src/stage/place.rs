@@ -8,30 +8,30 @@ use toile_geometry::Vec2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MarkValue {
     Corner(CornerName),
-    /// At a distance along the line from a corner (m).
+    /// At a distance from a corner along the line (m).
     Along(CornerName, f64),
-    /// A share of the way between corners.
+    /// At a share of the way from one corner to another (1).
     Between([CornerName; 2], f64),
 }
 
-/// A position on a line: by its corners, or found on an earlier stage.
+/// A position on a line: by a mark on this stage, or by a spot found on an earlier stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Placed {
     Mark(MarkValue),
     Spot(Spot),
 }
 
-/// A position on a named edge.
+/// A spot: a position on a named edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spot {
     pub edge: EdgeName,
-    /// Share of the named edge's arc length.
+    /// Share of the named edge's arc length (1).
     pub share: f64,
-    /// Arc length from the start of the line (m).
+    /// Arc length from the start of the line to the spot (m).
     pub along: f64,
 }
 
-/// Named edges in walking order, each with the shares between which it is walked.
+/// Stretch of a line: named edges in walking order, each with the two shares between which it is walked.
 pub(crate) type Stretch = Vec<(EdgeName, f64, f64)>;
 
 /// Reason why a mark has no position.
@@ -41,16 +41,16 @@ pub(crate) enum PlaceError {
     NoLine,
     /// The line has no such corner.
     NoCorner(CornerName),
-    /// The position lies beyond the line, or the share is not between 0 and 1.
+    /// The position lies beyond the end of the line, or the share is not between 0 and 1.
     Beyond,
 }
 
-/// Distance by which a share or a length may lie beyond its bounds (1) or (m): rounding.
+/// Distance by which a share (1) or a length (m) may exceed its bounds through rounding.
 const SLACK: f64 = 1e-9;
 
 impl Stage {
-    /// Result of a function on the lines with a name: a line that was cut is several lines, and the first
-    /// that succeeds counts.
+    /// Applies `give` to the lines with a name and returns the first success. A line that was divided is
+    /// several lines with the same name.
     fn of_line<T>(
         &self,
         name: LineName,
@@ -68,12 +68,13 @@ impl Stage {
         Err(error)
     }
 
-    /// The spot of a mark on a line.
+    /// The spot at which a mark lies on a line.
     pub(crate) fn spot(&self, line: LineName, mark: MarkValue) -> Result<Spot, PlaceError> {
         self.of_line(line, |line| Ok(line.at(line.along(mark)?, mark)))
     }
 
-    /// Position on this stage of a mark from an earlier stage: a corner that is still there stays a corner.
+    /// Position, on this stage, of a mark of the earlier stage `first`. A corner that still exists is taken
+    /// where it is now; any other mark is a spot of the earlier stage.
     pub(crate) fn placed(
         &self,
         first: &Self,
@@ -89,7 +90,7 @@ impl Stage {
         }
     }
 
-    /// Position and direction of travel at a spot.
+    /// Position (m) and unit direction of the line at a spot.
     pub(crate) fn at_spot(&self, line: LineName, spot: Spot) -> Option<(Vec2, Vec2)> {
         let own = |known: &&StageLine| known.name == line && known.half == 0;
         let edges = self.lines.iter().filter(own).flat_map(|line| &line.edges);
@@ -105,7 +106,7 @@ impl Stage {
         Some((edge.curve.point(t), direction))
     }
 
-    /// The edges between two positions of a line, without the edges that are not wanted.
+    /// The stretch between two positions of a line, without the edges for which `wanted` is false.
     pub(crate) fn stretch(
         &self,
         line: LineName,
@@ -118,7 +119,7 @@ impl Stage {
         })
     }
 
-    /// Length of a stretch on one half (m).
+    /// Length of a stretch on one half of a folded panel (m).
     pub(crate) fn stretch_length(&self, half: u8, stretch: &Stretch) -> f64 {
         let parts = stretch.iter().map(|&(name, from, to)| {
             let (low, high) = (from.min(to), from.max(to));
@@ -135,13 +136,13 @@ impl Stage {
     }
 }
 
-/// Whether an edge is sewn by seams: legs are sewn by their dart, underlays lie folded under, and the other
-/// halves are named by spans of their own.
+/// Whether seams of the document sew an edge. Legs are sewn by their dart, underlays lie folded under, and
+/// halves beyond a fold have spans of their own.
 pub(crate) fn is_sewn(edge: &StageEdge) -> bool {
     edge.half == 0 && !matches!(edge.name.role(), Some(Role::Leg | Role::Underlay))
 }
 
-/// A stretch walked the other way.
+/// The stretch, walked the other way.
 pub(crate) fn reversed(stretch: Stretch) -> Stretch {
     let back = stretch.into_iter().rev();
     back.map(|(edge, from, to)| (edge, to, from)).collect()
@@ -173,10 +174,11 @@ impl StageLine {
         }
     }
 
-    /// The name under which a corner stands in the edges of the line: its own, or that of its twin.
+    /// The name that a corner has in the edges of the line: its own name or, if that is a second name, the
+    /// first.
     pub(super) fn called(&self, corner: CornerName) -> CornerName {
         let mut called = corner;
-        // No chain of twins is longer than their list.
+        // A chain of twins is at most as long as the list of twins.
         for _ in 0..self.twins.len() {
             match self.twins.iter().find(|[known, _]| *known == called) {
                 Some([_, other]) => called = *other,
@@ -194,8 +196,8 @@ impl StageLine {
         }
     }
 
-    /// Arc length from the start of the line to a spot of an earlier stage (m); if the spot now lies in a
-    /// mouth, to the mouth.
+    /// Arc length from the start of the line to a spot of an earlier stage (m). If the spot now lies within
+    /// the mouth of a dart, the arc length to the nearer end of the mouth.
     fn along_spot(&self, spot: Spot) -> Result<f64, PlaceError> {
         let mut before = 0.0;
         let mut best: Option<(f64, f64)> = None;
@@ -246,8 +248,8 @@ impl StageLine {
         }
     }
 
-    /// The spot at an arc length. A mark given as a share of one edge keeps that edge, so that a share of 1
-    /// is its end and not the start of the next.
+    /// The spot at an arc length (m). A mark that is a share of one edge stays on that edge, so that a share
+    /// of 1 is the end of the edge and not the start of the next one.
     fn at(&self, along: f64, mark: MarkValue) -> Spot {
         let length = self.length();
         let wrapped = match self.is_closed() && along > length {
@@ -283,15 +285,15 @@ impl StageLine {
         })
     }
 
-    /// The edge that starts at a corner.
+    /// Name of the edge that starts at a corner.
     fn named_from(&self, corner: CornerName) -> Option<EdgeName> {
         let called = self.called(corner);
         let found = self.edges.iter().find(|edge| edge.start == Some(called));
         found.map(|edge| edge.name)
     }
 
-    /// The stretch from an arc length forwards to another; on a closed line it goes round if the second does
-    /// not lie beyond the first.
+    /// The stretch from one arc length forwards to another (m). On a closed line it goes on round the line if
+    /// `end` is not beyond `start`.
     fn between(&self, start: f64, end: f64, wanted: impl Fn(&StageEdge) -> bool) -> Stretch {
         let length = self.length();
         let end = match self.is_closed() && end <= start + SLACK {

@@ -17,7 +17,7 @@ use crate::{
 };
 use toile_geometry::{Curve, Vec2};
 
-/// Pleats with their numbers evaluated: the spread that makes room for them, and their kind and depth.
+/// Pleats with their numbers evaluated: the spread that makes room for them, their depth and kind.
 #[derive(Clone, Debug)]
 pub(crate) struct Pleating {
     pub spread: Spreading,
@@ -25,22 +25,24 @@ pub(crate) struct Pleating {
     pub depth: f64,
     pub kind: PleatKind,
     pub pressed: Side,
-    /// Whether the underlay is cut along the edge that it lies on when folded.
+    /// Whether the pleats are trued: the end of each underlay is cut along the edge that it lies under when
+    /// folded.
     pub trued: bool,
 }
 
-/// A part of the outline beside a pleat.
+/// A piece of the outline beside a pleat.
 #[derive(Clone, Copy)]
 struct Piece {
     curve: Curve,
     allowance: f64,
 }
 
-/// Tolerance of the depth along a line that runs square to the pleat (m).
+/// Tolerance of the depth where the outline runs square to the pleat (m).
 const SAME_DEPTH: f64 = 1e-9;
 
-/// A stage with pleats: its parts moved aside, underlays between them, and the lines to fold. Pleats of depth
-/// 0 leave it as it was: the corners of each underlay are one.
+/// A stage with pleats: its parts are moved apart, with underlays between them and lines to fold along.
+/// Pleats of depth 0 leave the stage unchanged, except that all corners of each underlay are named at one
+/// place.
 pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError> {
     if wish.depth < -NOTHING {
         return Err(SpreadError::NoDepth);
@@ -65,7 +67,7 @@ pub(crate) fn pleat(stage: &Stage, wish: &Pleating) -> Result<Stage, SpreadError
     Ok(result)
 }
 
-/// A stage with pleats of depth 0: every corner of an underlay lies where its line meets the outline.
+/// A stage with pleats of depth 0: all corners of an underlay lie where the pleat line meets the outline.
 fn laid_flat(
     stage: &Stage,
     open: &CutOpen,
@@ -95,10 +97,11 @@ fn laid_flat(
     Ok(result)
 }
 
-/// The folds of a pleat at one end of its line, from the part before it along the outline to the part after
-/// it: whether each fold lies under the part before.
+/// The folds of a pleat at one end of its line, in the order of the outline. Each is `true` if the fold lies
+/// under the part of the panel before the pleat, `false` if under the part after it.
 fn folds(wish: &Pleating, (turn, end): (f64, usize)) -> Vec<bool> {
-    // On a counter-clockwise outline, the part left of the line comes before the pleat at the line's start.
+    // On a counter-clockwise outline, the part left of the pleat line comes before the pleat at the start of
+    // the line.
     let left_is_before = (turn > 0.0) == (end == 0);
     match wish.kind {
         PleatKind::Knife => vec![(wish.pressed == Side::Left) == left_is_before],
@@ -114,7 +117,8 @@ fn corner(by: OperationId, gap: (u16, usize), k: usize) -> CornerName {
     }
 }
 
-/// The outline across a pleat. When folded, it lies on the outline beside the pleat.
+/// The outline across the underlay of a pleat. When the pleat is folded, it lies on the outline beside the
+/// pleat.
 fn underlay(
     open: &CutOpen,
     gap: &Gap<'_>,
@@ -149,7 +153,7 @@ fn underlay(
         let way = motion.direction(way);
         let beside = beside(open, gap, (is_before, wish.depth))?;
         let twice = across * (2.0 * wish.depth);
-        // Position of the part's own end of the outline after the spread.
+        // Position, after the spread, of the end of the outline on this part (m).
         let at = if is_before { from } else { to };
         let near: Vec<Piece> = beside.iter().map(|p| moved(*p, motion)).collect();
         let back = |pieces: &[Piece]| -> Vec<Piece> {
@@ -179,7 +183,8 @@ fn underlay(
     Ok(crossed(gap, by, layers))
 }
 
-/// The layers of an underlay as edges, from the end of the edge before it to the start of the edge after it.
+/// The layers of an underlay as edges, between the end of the edge before the pleat and the start of the edge
+/// after it.
 fn crossed(gap: &Gap<'_>, by: OperationId, layers: Vec<Vec<Piece>>) -> Crossed {
     let number = gap.chord.number;
     let (from, to) = (gap.before.curve.end(), gap.after.curve.start());
@@ -223,8 +228,8 @@ fn moved(piece: Piece, motion: Motion) -> Piece {
     with(piece, motion.curve(piece.curve))
 }
 
-/// Moves the ends of a row of edges exactly to the given points, and the start of each edge to the end of the
-/// one before.
+/// Moves the ends of joined edges to exactly the given points, and the start of each edge to the end of the
+/// edge before.
 fn join(edges: &mut [StageEdge], [from, to]: [Vec2; 2]) {
     let count = edges.len();
     let mut start = from;
@@ -238,7 +243,7 @@ fn join(edges: &mut [StageEdge], [from, to]: [Vec2; 2]) {
     }
 }
 
-/// The outline beside a pleat, from its line as far away as a fold is deep.
+/// The outline beside a pleat, from the pleat line to the distance at which a fold ends.
 fn beside(
     open: &CutOpen,
     gap: &Gap<'_>,
@@ -264,7 +269,7 @@ fn beside(
             sign = away(curve.point(1e-3)).signum();
         }
         let far = |t: f64| sign * away(curve.point(t));
-        // The outline must lead away from the pleat all the way, or it would fold over itself.
+        // The outline must lead away from the pleat everywhere, else the folded cloth would overlap itself.
         let leads = (0..=32).all(|k| {
             let t = f64::from(k) / 32.0;
             far(t) > depth || sign * way.perp(&curve.derivative(t)) > -SAME_DEPTH
@@ -295,7 +300,8 @@ fn beside(
     Err(SpreadError::TooDeep(gap.chord.number))
 }
 
-/// The fold lines of a pleat, and the lines to which folds are laid, from its start to its end.
+/// The lines along which a pleat is folded, and the lines that its folds are laid to, from its start to its
+/// end.
 fn creases(
     outline: Option<&StageLine>,
     (by, chord): (OperationId, &Chord),
@@ -303,7 +309,7 @@ fn creases(
 ) -> Vec<StageLine> {
     let edges = outline.map_or(&[][..], |line| &line.edges);
     let layers = 2 * folds.len();
-    // Each layer starts at a corner, and the last ends at the start of the next edge.
+    // Each layer starts at a corner; the last layer ends at the start of the next edge.
     let ends = |end: usize| -> Vec<Vec2> {
         let name = |k: usize| Name::Made {
             by,

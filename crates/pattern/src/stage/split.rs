@@ -11,14 +11,14 @@ use toile_geometry::{Curve, Path};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum SplitError {
     Cut(CutError),
-    /// The curve meets the outline in this many places instead of two.
+    /// The curve meets the outline in this number of places, not in two.
     Meets(usize),
 }
 
-/// An end of the curve this near to the outline lies on it (m).
+/// Largest distance from the outline at which an end of the curve counts as on it (m).
 const ON_OUTLINE: f64 = 1e-6;
 
-/// The stage with its two sides, left and right of the curve.
+/// The stage with the stages of its two sides, left and right of the curve.
 pub(crate) fn split(
     stage: &Stage,
     (by, line): (OperationId, LineName),
@@ -39,7 +39,8 @@ pub(crate) fn split(
     Ok(result)
 }
 
-/// The first and the last meeting of the curve with the outline: arc lengths along both (m).
+/// The first and the last place at which the curve meets the outline: for each the arc lengths along the
+/// curve and along the outline (m).
 fn meetings(curve: &Path, outline: &Path) -> Result<[(f64, f64); 2], SplitError> {
     let length = curve.length();
     let end_at = |along: f64| {
@@ -50,7 +51,7 @@ fn meetings(curve: &Path, outline: &Path) -> Result<[(f64, f64); 2], SplitError>
     let ends = [end_at(0.0), end_at(length)];
     let crossings = curve.crossings(outline);
     let inner = crossings.iter().map(|c| (c.here.along, c.there.along));
-    // A crossing near an end of the curve that lies on the outline counts as that end.
+    // A crossing near an end of the curve that lies on the outline is the same place as that end.
     let inner = inner.filter(|(along, _)| {
         let near = |end: Option<(f64, f64)>, at: f64| end.is_some() && (along - at).abs() <= 1e-5;
         !near(ends[0], 0.0) && !near(ends[1], length)
@@ -72,7 +73,7 @@ fn name<Id>(by: OperationId, index: u16) -> Name<Id> {
     }
 }
 
-/// The cut as edges, from its start on the outline to its end.
+/// The cut as edges, from its start on the outline to its end on the outline.
 fn cut_edges(by: OperationId, cut: &Path) -> Vec<StageEdge> {
     let length = cut.length();
     let count = cut.curves().len();
@@ -95,7 +96,7 @@ fn cut_edges(by: OperationId, cut: &Path) -> Vec<StageEdge> {
         .collect()
 }
 
-/// The cut walked the other way: the edge of the other side.
+/// The edges of the cut walked the other way, for the side on which the cut runs backwards.
 fn cut_back(by: OperationId, edges: &[StageEdge]) -> Vec<StageEdge> {
     let back = edges.iter().rev().enumerate();
     back.map(|(k, edge)| StageEdge {
@@ -109,7 +110,7 @@ fn cut_back(by: OperationId, edges: &[StageEdge]) -> Vec<StageEdge> {
     .collect()
 }
 
-/// Both sides of a stage whose outline is divided at the start and the end of the cut.
+/// Both sides of a stage, whose outline is divided at the start and at the end of the cut.
 fn sides(
     stage: &Stage,
     (outline, line): (usize, StageLine),
@@ -123,8 +124,8 @@ fn sides(
             .map(|k| line.edges[(from + k) % count].clone())
             .collect()
     };
-    // One side: the cut forwards and on along the outline to its start. Other side: the cut backwards and on
-    // to its end.
+    // One side is the cut forwards, then the outline back to the start of the cut; the other is the cut
+    // backwards, then the outline back to the end of the cut.
     let rests = [walk(end, start), walk(start, end)];
     let forwards = cut_edges(by, cut);
     let cuts = [forwards.clone(), cut_back(by, &forwards)];
@@ -137,7 +138,7 @@ fn sides(
             edges: own,
             ..line.clone()
         };
-        // The forward cut ends at corner 1, the backward cut at corner 0.
+        // The cut walked forwards ends at corner 1, walked backwards at corner 0.
         side.call(cut_count, name(by, k % 2));
         lines.push(side);
     }
@@ -173,15 +174,15 @@ fn sides(
             ..stage.clone()
         }));
     }
-    // On a clockwise outline the forward cut bounds the right side.
+    // On a clockwise outline the side with the forward cut is the right side.
     if stage.turn() < 0.0 {
         sides.reverse();
     }
     sides
 }
 
-/// Moves the ends of a cut exactly onto the outline, which continues from the end of the cut and returns to
-/// its start.
+/// Moves the ends of a cut to exactly the outline. `rest` is the part of the outline from the end of the cut
+/// back to its start.
 fn fit(cut: &mut [StageEdge], rest: &[StageEdge]) {
     let (Some(next), Some(before)) = (rest.first(), rest.last()) else {
         return;

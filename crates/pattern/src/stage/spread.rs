@@ -6,23 +6,23 @@ use super::{PlaceError, Placed, Stage, StageEdge, StageLine, with_ends};
 use crate::{Bridge, CornerName, EdgeCorner, LineName, Name, OperationId, Role, SpreadCut};
 use toile_geometry::{Curve, Path, Vec2};
 
-/// A spread with its numbers evaluated.
+/// A spread operation with its numbers evaluated.
 #[derive(Clone, Debug)]
 pub(crate) struct Spreading {
     pub by: OperationId,
     pub line: LineName,
-    /// A position on the part that stays fixed.
+    /// A position on the line whose part of the panel stays fixed.
     pub held: Placed,
     pub cuts: Vec<SpreadAlong>,
     pub bridge: Bridge,
 }
 
-/// A cut with its numbers evaluated.
+/// A cut of a spread with its numbers evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpreadAlong {
     pub number: u16,
     pub ends: [Placed; 2],
-    /// Opening at the start and at the end of the cut (m).
+    /// Openings at the start and at the end of the cut (m).
     pub openings: [f64; 2],
 }
 
@@ -31,33 +31,32 @@ pub(crate) struct SpreadAlong {
 pub(crate) enum SpreadError {
     /// The cut with this number cannot be made.
     Cut(u16, CutError),
-    /// The line or the fixed place is missing.
+    /// The line, or the place on it that stays fixed, is missing.
     Line(CutError),
-    /// An opening is negative.
+    /// An opening of the cut with this number is negative.
     Negative(u16),
-    /// The openings of a cut differ by more than twice its length.
+    /// The openings of the cut with this number differ by more than twice its length.
     TooWide(u16),
-    /// Two cuts cross, or lie on each other.
+    /// Two cuts, with these numbers, cross or lie on each other.
     Cross(u16, u16),
-    /// Two cuts open at the same place.
+    /// Two cuts, with these numbers, open at the same place.
     OneEnd(u16, u16),
-    /// Two cuts have the same number.
+    /// Two cuts have this same number.
     Number(u16),
-    /// Too many cuts.
+    /// There are more than [`MAX_CUTS`] cuts.
     TooMany,
-    /// The number of a cut or pleat is above the largest from which its parts can be numbered: the number,
-    /// and the largest.
+    /// The number of a cut or pleat is too large to number its parts by: the number, and the largest allowed.
     Large(u16, u16),
     /// The depth of pleats is negative.
     NoDepth,
-    /// The outline beside the pleat of that number turns back within the depth of a fold.
+    /// Within the depth of a fold, the outline beside the pleat with this number turns back.
     TooDeep(u16),
 }
 
-/// Most cuts of one operation: a part is identified by one bit for each cut.
+/// Most cuts of one operation: a set of cuts is stored as one bit for each cut.
 pub(crate) const MAX_CUTS: usize = 64;
 
-/// A cut between two corners of the outline; `at` holds the indices of the edges that start there.
+/// A cut between two corners of the outline; `at` are the indices of the edges that start at these corners.
 pub(super) struct Chord {
     pub at: [usize; 2],
     pub points: [Vec2; 2],
@@ -65,7 +64,7 @@ pub(super) struct Chord {
     pub openings: [f64; 2],
 }
 
-/// The stage spread along cuts.
+/// The stage, spread along its cuts.
 pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadError> {
     let open = CutOpen::of(stage, wish, SpreadCut::LARGEST)?;
     open.moved(stage, |gap| {
@@ -96,10 +95,10 @@ pub(crate) fn spread(stage: &Stage, wish: &Spreading) -> Result<Stage, SpreadErr
     })
 }
 
-/// A stage cut along chords, with the motions of its parts.
+/// A stage that is cut along chords, with the motion of each of its parts.
 pub(super) struct CutOpen {
     outline: usize,
-    /// The outline, divided at the ends of the cuts.
+    /// The outline, divided at both ends of each cut.
     pub line: StageLine,
     pub chords: Vec<Chord>,
     parts: Parts,
@@ -110,22 +109,22 @@ pub(super) struct Gap<'g> {
     pub chord: &'g Chord,
     /// 0 at the start of the cut, 1 at its end.
     pub end: usize,
-    /// Index of the edge that starts there in the divided outline.
+    /// Index, in the divided outline, of the edge that starts at the opening.
     pub at: usize,
-    /// The moved edge before the opening and the moved edge after it.
+    /// The edge before the opening and the edge after it, both moved with their parts.
     pub before: &'g StageEdge,
     pub after: &'g StageEdge,
 }
 
-/// The edges across an opening.
+/// The edges that lead across an opening.
 pub(super) struct Crossed {
-    /// The corners at their start and end.
+    /// The corners at the start and end of these edges.
     pub corners: [CornerName; 2],
     pub edges: Vec<StageEdge>,
 }
 
 impl CutOpen {
-    /// Cuts a stage; `largest` is the largest number that a cut may have.
+    /// Cuts a stage along the cuts of `wish`; `largest` is the largest number that a cut may have.
     pub fn of(stage: &Stage, wish: &Spreading, largest: u16) -> Result<Self, SpreadError> {
         if let Some(cut) = wish.cuts.iter().find(|cut| cut.number > largest) {
             return Err(SpreadError::Large(cut.number, largest));
@@ -177,7 +176,7 @@ impl CutOpen {
         self.parts.motions[self.parts.of_edge[edge]]
     }
 
-    /// The stage with every part moved, and with edges across the openings.
+    /// The stage with all parts moved, and with the edges that `cross` gives across the openings.
     pub fn moved(
         &self,
         stage: &Stage,
@@ -195,7 +194,7 @@ impl CutOpen {
         Ok(everything.moved(stage, self.outline, line, &self.parts.motions))
     }
 
-    /// The outline with every part moved, and openings bridged.
+    /// The outline with all parts moved, and with the edges that `cross` gives across the openings.
     fn bridged(
         &self,
         cross: impl Fn(&Gap<'_>) -> Result<Crossed, SpreadError>,
@@ -249,13 +248,14 @@ impl Chord {
         Path::new(vec![Curve::Line { start, end }])
     }
 
-    /// Whether an edge is in the part between the two ends of the cut, in the order of the outline's edges.
+    /// Whether an edge of the outline lies between the two ends of the cut, in the order of edges.
     fn is_between(&self, edge: usize) -> bool {
         let [a, b] = self.at;
         (a.min(b)..a.max(b)).contains(&edge)
     }
 
-    /// Whether the whole of another cut is in that part.
+    /// Whether another cut, which does not cross this one, lies between the two ends of this cut, in the
+    /// order of edges.
     fn has_between(&self, other: &Self) -> bool {
         let own = other.at.iter().find(|at| !self.at.contains(at));
         own.is_some_and(|at| self.is_between(*at))
@@ -271,14 +271,15 @@ impl Chord {
         free.is_empty() || free.len() == 2 && free[0] != free[1]
     }
 
-    /// Motion of the part beyond the cut relative to the part before it; `left` tells whether the part beyond
-    /// lies left of the cut.
+    /// Motion of the part beyond the cut, relative to the part on the near side; `left` tells whether the
+    /// part beyond lies left of the cut.
     fn opened(&self, left: bool) -> Motion {
         let [start, end] = self.points;
         let way = end - start;
         let [a, b] = self.openings;
         let side = if left { 1.0 } else { -1.0 };
-        // The opened cut is an isosceles trapezoid: its legs are the cut, its bases the openings.
+        // The opened cut is an isosceles trapezoid: its legs are the two copies of the cut, its bases the
+        // openings.
         let half = ((a - b) / (2.0 * way.norm())).clamp(-1.0, 1.0).asin();
         let axis = Motion::about(Vec2::zeros(), -side * half).direction(way.normalize());
         let across = Vec2::new(-axis.y, axis.x) * side;
@@ -319,9 +320,9 @@ fn check_chords(stage: &Stage, outline: usize, chords: &[Chord]) -> Result<(), S
     Ok(())
 }
 
-/// The parts between cuts.
+/// The parts into which the cuts divide a panel.
 struct Parts {
-    /// Index of the part of each edge of the divided outline.
+    /// For each edge of the divided outline, the index of its part.
     of_edge: Vec<usize>,
     /// Motion of each part.
     motions: Vec<Motion>,
@@ -364,7 +365,8 @@ impl Parts {
     }
 }
 
-/// Motion of a part: across every cut between it and the fixed part, the cut nearest to the fixed part first.
+/// Motion of a part: the motions at all cuts between it and the fixed part, beginning with the cut nearest to
+/// the fixed part.
 fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
     let is_far = |k: usize| own >> k & 1 == 1;
     let between: Vec<usize> = (0..chords.len())
@@ -379,15 +381,15 @@ fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
     order.sort_unstable();
     order.iter().fold(Motion::NONE, |so_far, &(_, k)| {
         let chord = &chords[k];
-        // On a counter-clockwise outline, the part between the start and the end of the cut lies right of
-        // the cut.
+        // On a counter-clockwise outline, the part between the start and the end of the cut lies right of the
+        // cut.
         let forwards = chord.at[0] < chord.at[1];
         let left = (is_far(k) == forwards) != (turn > 0.0);
         so_far.after(chord.opened(left))
     })
 }
 
-/// The curve from the end of one edge to the start of another.
+/// The curve across an opening, from the end of one edge to the start of another.
 fn bridge(kind: Bridge, before: &StageEdge, after: &StageEdge) -> Curve {
     let (start, end) = (before.curve.end(), after.curve.start());
     let leaving = before.curve.derivative(1.0).try_normalize(1e-15);

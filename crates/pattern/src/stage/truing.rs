@@ -17,26 +17,27 @@ use crate::{CornerName, EdgeCorner, LineKind, Name, OperationId, Role};
 use std::f64::consts::FRAC_PI_8;
 use toile_geometry::Curve;
 
-/// An edge that runs on and turns by more than this has a kink there (rad): a centimetre further the line is
-/// half a millimetre off its direction before.
+/// Turn of an edge above which it has a kink where it continues across a dart, pleat or seam (rad). At this
+/// turn a line is half a millimetre off its former direction after one centimetre.
 pub(crate) const KINK: f64 = 3.0 * std::f64::consts::PI / 180.0;
-/// Edges with different names that turn by more than this make a corner: neither runs on (rad).
+/// Turn between edges with different names above which they form a corner, so that neither continues the
+/// other (rad).
 pub(crate) const CORNER: f64 = std::f64::consts::PI / 6.0;
-/// Shares of an edge that differ by less than this count as the same.
+/// Largest difference between shares of an edge that count as equal (1).
 const SAME_SHARE: f64 = 1e-9;
 
-/// Consecutive darts in one edge, by indices of the outline's edges.
+/// A row: consecutive darts in one edge, by indices of edges of the outline.
 struct DartRow {
-    /// Edges of each stretch; there is one stretch more than darts.
+    /// Indices of the edges of each stretch before, between and after the darts.
     stretches: Vec<Vec<usize>>,
-    /// The first leg of each dart.
+    /// Index of the first leg of each dart.
     legs: Vec<usize>,
     /// Indices of the darts in the stage.
     darts: Vec<usize>,
 }
 
-/// The stage with the edges across its trued darts redrawn, and the darts that cannot be trued, with the
-/// reason. Edges keep their direction at the given corners, where they run on.
+/// The stage with the edges across its trued darts redrawn; also the darts that cannot be trued, each with
+/// the reason. At the corners `going_on`, where edges continue smoothly, they keep their direction.
 pub(crate) fn true_darts(
     mut stage: Stage,
     going_on: &[CornerName],
@@ -69,8 +70,8 @@ pub(crate) fn true_darts(
 }
 
 impl Stage {
-    /// The edge that a dart opens in, and its length without mouths (m); none if the dart lies between
-    /// two edges.
+    /// The edge that a dart opens in, and its length without mouths of darts (m). `None`: the dart lies
+    /// between two edges.
     pub fn edge_beside(&self, dart: OperationId) -> Option<(crate::EdgeName, f64)> {
         let edges = self.outline();
         let is_own = |edge: &&StageEdge| edge.half == 0;
@@ -87,7 +88,8 @@ impl Stage {
         (before.name == after.name).then_some((before.name, length))
     }
 
-    /// The stage before its darts were trued, as far as that is recorded.
+    /// The stage with the outline that it had before its darts were trued, if that is recorded; else the
+    /// stage unchanged.
     pub(crate) fn as_untrued(&self) -> Self {
         let mut stage = self.clone();
         let outline = |line: &&mut super::StageLine| line.kind == LineKind::Outline;
@@ -101,7 +103,7 @@ impl Stage {
     }
 }
 
-/// Darts to be trued that take cloth in, but have no edge that runs on across their mouth.
+/// Darts that are to be trued and take in cloth, but whose mouths do not lie within one edge.
 fn beside_no_row(stage: &Stage, outline: usize, rows: &[DartRow]) -> Vec<OperationId> {
     let edges = &stage.lines[outline].edges;
     let is_open = |by: OperationId| edges.iter().any(|e| e.half == 0 && e.name == leg(by, 0));
@@ -113,7 +115,7 @@ fn beside_no_row(stage: &Stage, outline: usize, rows: &[DartRow]) -> Vec<Operati
     lone.map(|(_, dart)| dart.by).collect()
 }
 
-/// Divides arcs of edges with trued darts, so that a cubic follows each part closely.
+/// Divides arcs of edges with trued darts, so that a cubic can follow each part of the arc closely.
 fn divide_arcs(stage: &mut Stage, outline: usize) {
     let mut rows = rows(stage, outline);
     rows.retain(|row| !row.plain(stage, outline, &[]).is_smooth());
@@ -155,11 +157,11 @@ fn leg(by: OperationId, index: u16) -> crate::EdgeName {
     }
 }
 
-/// The rows of trued darts of an outline.
+/// The rows of trued darts in an outline.
 fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     let edges = &stage.lines[outline].edges;
     let count = edges.len();
-    // Finds the first leg of each dart whose mouth lies within an edge that runs on.
+    // For a dart whose mouth lies within one edge: index of its first leg.
     let within = |number: usize| -> Option<usize> {
         let dart = &stage.darts[number];
         let is_first = |edge: &StageEdge| edge.name == leg(dart.by, 0) && edge.half == 0;
@@ -188,7 +190,7 @@ fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     let mut rows: Vec<DartRow> = Vec::new();
     while let Some(&(mut first, mut number)) = darts.first() {
         let mut walked = vec![number];
-        // Go back to the first dart of the edge.
+        // Goes back to the first dart of the same edge.
         while let Some(&(leg, before)) = darts
             .iter()
             .find(|(leg, _)| (leg + 2) % count == stretch_before(edges, first)[0])
@@ -215,7 +217,7 @@ fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     rows
 }
 
-/// Consecutive edges with one name that end at the start of the edge `end`.
+/// Consecutive edges with the same name, the last of which is the one before the edge `end`.
 fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
     let count = edges.len();
     let mut stretch = vec![(end + count - 1) % count];
@@ -230,7 +232,7 @@ fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
     stretch
 }
 
-/// Consecutive edges with one name from the edge `start` on.
+/// Consecutive edges with the same name, the first of which is the edge `start`.
 fn stretch_after(edges: &[StageEdge], start: usize) -> Vec<usize> {
     let count = edges.len();
     let mut stretch = vec![start];
@@ -257,7 +259,7 @@ impl DartRow {
         all.any(|k| !matches!(edges[*k].curve, Curve::Line { .. }))
     }
 
-    /// The row as plain curves and points.
+    /// The row as curves and points, without names.
     fn plain(&self, stage: &Stage, outline: usize, going_on: &[CornerName]) -> Row {
         let line = &stage.lines[outline];
         let edges = &line.edges;
@@ -311,7 +313,7 @@ impl DartRow {
     }
 }
 
-/// Moves the mouths of darts in rows, and the notches beside them, along with the edges of the outline.
+/// Moves the mouths of darts in rows, and notches on the redrawn edges, with the outline.
 fn follow(stage: &mut Stage, outline: usize, rows: &[DartRow]) {
     let edges = &stage.lines[outline].edges;
     let stretches = rows.iter().flat_map(|row| &row.stretches);

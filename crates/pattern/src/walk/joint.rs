@@ -4,42 +4,43 @@ use super::{Run, Walk, cloth_is_left, rings};
 use crate::{Draft, EdgeOrigin, Pattern, Piece, PieceEdge, Role};
 use toile_geometry::{Curve, Vec2};
 
-/// Greatest turn of a smooth line across a seam (deg). The line that a hand draws to smooth it, from a
+/// Largest turn of a line across a seam that counts as smooth (deg). A line that is smoothed by hand, from a
 /// centimetre before the seam to a centimetre after, deviates by 1 cm tan(1 deg) = 0.17 mm: less than the
 /// width of a pencil's line.
 pub const SMOOTH: f64 = 2.0;
-/// Greatest turn of a slight kink (deg); a line that turns by more has a kink that is visible when sewn:
-/// smoothing it deviates by 1 cm tan(3 deg) = 0.5 mm, the tolerance of the sides of a seam.
+/// Largest turn of a line across a seam that counts as a slight kink (deg). A line that turns more has a kink
+/// that is visible when sewn: smoothing it deviates by 1 cm tan(3 deg) = 0.5 mm, the tolerance of the sides
+/// of a seam.
 pub const SLIGHT_KINK: f64 = 6.0;
-/// A corner that deviates less than this from a straight line is none (rad): the edge runs on past the end of
-/// the seam.
+/// Deviation from a straight line below which two edges at the end of a seam do not form a corner (rad): the
+/// edge continues beyond the end of the seam.
 const STRAIGHT_ON: f64 = std::f64::consts::PI / 6.0;
-/// Shares of an edge that differ by less than this count as the same.
+/// Largest difference between shares of an edge that count as equal (1).
 const SAME_SHARE: f64 = 1e-9;
 
-/// A line that crosses a seam at one of its ends: the two edges that leave the seam there, with the pieces
-/// laid together.
+/// A line that crosses a seam at one of its ends. It consists of the two edges that leave the seam there,
+/// when the pieces are laid together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
     /// End of the seam: 0 its start, 1 its end.
     pub end: usize,
     /// Indices of the pieces in the draft.
     pub pieces: [usize; 2],
-    /// The edges that leave the seam, on the piece of the first side and on the piece of the second.
+    /// The edges that leave the seam: on the piece of the first side, and on the piece of the second side.
     pub edges: [EdgeOrigin; 2],
-    /// The corners of the seam, each in the plane of its piece (m).
+    /// The corners at the end of the seam, each in the plane of its piece (m).
     pub corners: [Vec2; 2],
-    /// Unit directions in which the edges leave, each in the plane of its piece, with darts between seam and
-    /// edge closed.
+    /// Unit vectors along the edges away from the seam, each in the plane of its piece; darts between the
+    /// seam and the edge are closed.
     pub leaving: [Vec2; 2],
-    /// Angles between seam and edge, through the cloth (rad).
+    /// Angles between the seam and each edge, measured through the cloth (rad).
     pub angles: [f64; 2],
-    /// Turn of the line across the seam (rad), -pi to pi: 0 smooth, positive a peak that points out of the
-    /// cloth, negative a dip into the cloth.
+    /// Turn of the line across the seam (rad), from -pi to pi: 0 smooth, positive a peak that points out of
+    /// the cloth, negative a dip into the cloth.
     pub kink: f64,
-    /// Length by which the first piece extends beyond the second when both are laid together at the start of
-    /// the seam and walked without stretching either (m): the part of the difference of the sides that
-    /// neither ease nor gathers take in. 0 at the start.
+    /// Length by which the first piece extends beyond the second at this end, when both are laid together at
+    /// the start of the seam and neither is stretched (m): the part of the difference in length that neither
+    /// ease nor gathers take in. 0 at the start of the seam.
     pub step: f64,
 }
 
@@ -50,12 +51,12 @@ pub enum Smoothness {
     Smooth,
     /// The line turns by no more than [`SLIGHT_KINK`].
     Slight,
-    /// The line turns by more.
+    /// The line turns by more than [`SLIGHT_KINK`].
     Kink,
 }
 
 impl Joint {
-    /// Smoothness of the line.
+    /// Smoothness of the line across the seam.
     pub fn smoothness(&self) -> Smoothness {
         let turn = self.kink.abs().to_degrees();
         match () {
@@ -65,7 +66,7 @@ impl Joint {
         }
     }
 
-    /// The names of the edges.
+    /// Names of the two edges.
     pub fn names(&self, pattern: &Pattern, draft: &Draft) -> [String; 2] {
         [0, 1].map(|k| {
             let piece = draft.pieces.get(self.pieces[k]);
@@ -74,7 +75,7 @@ impl Joint {
         })
     }
 
-    /// Name of the line: the name of both edges if they share it, else both names.
+    /// Name of the line: the name of both edges if it is the same, else both names.
     pub fn line(&self, pattern: &Pattern, draft: &Draft) -> String {
         match self.names(pattern, draft) {
             [one, other] if one == other => one,
@@ -85,8 +86,8 @@ impl Joint {
 
 impl Walk<'_> {
     /// The lines that cross the seam at its start and at its end; `ease` is the length by which one side may
-    /// exceed the other (m). None where the edge of a side runs on past the end of the seam within 30 degrees
-    /// of straight, as where a slit begins or a third piece is sewn on.
+    /// be longer than the other (m). `None`: the edge of a side continues beyond the end of the seam, within
+    /// 30 degrees of straight, as where a slit begins or a third piece is sewn on.
     pub fn joints(&self, ease: f64) -> [Option<Joint>; 2] {
         [0, 1].map(|end| self.joint(end, ease))
     }
@@ -119,7 +120,7 @@ impl Walk<'_> {
         })
     }
 
-    /// The corner of a side at an end of the seam; none if the seam ends within an edge.
+    /// The corner of a side at an end of the seam. `None`: the seam ends within an edge.
     fn corner(&self, side: usize, end: usize) -> Option<SeamCorner> {
         let runs = &self.sides.0[side].runs;
         let run = if end == 0 {
@@ -129,7 +130,8 @@ impl Walk<'_> {
         };
         let piece = self.draft.pieces.get(run.span.piece)?;
         let (into_seam, at) = into_run(run, end)?;
-        // Whether the ring continues from the seam forwards.
+        // Whether the edge after the end of the seam is the next one in the direction of the ring, not
+        // against it.
         let forward = (run.span.to > run.span.from) == (end == 1);
         let share = if end == 0 { run.span.from } else { run.span.to };
         let wanted = if forward { 1.0 } else { 0.0 };
@@ -163,7 +165,8 @@ struct SeamCorner {
     angle: f64,
 }
 
-/// Unit direction from an end of a run into it, and the position of that end.
+/// Unit vector along a run at one of its ends, towards the inside of the run; and the position of that end
+/// (m).
 fn into_run(run: &Run, end: usize) -> Option<(Vec2, Vec2)> {
     let curves = run.path.curves();
     Some(match end {
@@ -178,9 +181,9 @@ fn into_run(run: &Run, end: usize) -> Option<(Vec2, Vec2)> {
     })
 }
 
-/// The edge next to another on its ring, and the unit direction in which it leaves. Darts between the two are
-/// closed: both legs are passed over, and the direction is turned by the dart's angle. Underlays of pleats
-/// lie folded under, and the direction stays as it is.
+/// The edge next to another on its ring, and the unit vector along it away from the other edge. Darts between
+/// the two are closed: both legs are skipped, and the vector is turned by the dart's angle. Underlays of
+/// pleats lie folded under: they are skipped without a turn.
 fn neighbour(piece: &Piece, edge: usize, forward: bool) -> Option<(&PieceEdge, Vec2)> {
     let mut before = 0;
     let ring = rings(piece).find(|ring| {
@@ -203,7 +206,7 @@ fn neighbour(piece: &Piece, edge: usize, forward: bool) -> Option<(&PieceEdge, V
             let way = leaving(&walked(found, forward));
             return Some((found, turned(way, closing)));
         };
-        // The second leg is laid on the first by a turn about the apex, where both meet.
+        // The second leg is turned onto the first about the apex, where both legs meet.
         let other = next(k, count, forward);
         let is_pair = ring[other].origin.leg().is_some_and(|(own, _)| own == by);
         if !is_pair || other == edge - before {
@@ -225,7 +228,7 @@ fn next(k: usize, count: usize, forward: bool) -> usize {
     }
 }
 
-/// The curve of an edge in walking direction, with its ring or against it.
+/// The curve of an edge in the direction of its ring if `forward`, else against it.
 fn walked(edge: &PieceEdge, forward: bool) -> Curve {
     match forward {
         true => edge.curve,
@@ -238,8 +241,8 @@ fn turned(v: Vec2, angle: f64) -> Vec2 {
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
-/// Unit direction of a curve at its start; if its derivative vanishes there, towards a point a little
-/// further on.
+/// Unit vector along a curve at its start; if the derivative vanishes there, towards a point a little further
+/// on.
 fn leaving(curve: &Curve) -> Vec2 {
     let own = curve.derivative(0.0).try_normalize(1e-12);
     let further = || (curve.point(1e-3) - curve.start()).try_normalize(1e-15);

@@ -2,8 +2,8 @@
 //! place, to compare lengths, notches and the edges that continue across the seam.
 //!
 //! At every place both seam lines touch and are tangent, with the cloth of the two pieces on opposite sides
-//! of the line, as when the seam is sewn and pressed open. Mouths of darts in the seam are passed over, from
-//! leg to leg, as if the dart were closed.
+//! of the line, as when the seam is sewn and pressed open. The walk skips mouths of darts in the seam, from
+//! one leg to the other, as if the darts were closed.
 
 mod joint;
 mod notches;
@@ -16,7 +16,7 @@ use crate::{Draft, DraftSeam, DraftSpan, Evaluation, Piece, PieceEdge, SeamOrigi
 use std::sync::Arc;
 use toile_geometry::{Path, Vec2};
 
-/// A seam that can be walked.
+/// A seam of a draft, measured so that it can be walked.
 #[derive(Clone, Debug)]
 pub struct Walk<'d> {
     draft: &'d Draft,
@@ -24,12 +24,12 @@ pub struct Walk<'d> {
     sides: WalkSides,
 }
 
-/// The measured sides of a seam: with them a walk can start again without measuring, as long as the draft is
-/// the same.
+/// The measured sides of a seam. As long as the draft is the same, a new walk can use them without measuring
+/// the seam again.
 #[derive(Clone, Debug)]
 pub struct WalkSides(Arc<[WalkedSide; 2]>);
 
-/// One side of a seam in walking order, mouths of darts left out.
+/// One side of a seam in walking order, without the mouths of darts.
 #[derive(Clone, Debug)]
 struct WalkedSide {
     runs: Vec<Run>,
@@ -37,7 +37,7 @@ struct WalkedSide {
     length: f64,
 }
 
-/// A stretch of one edge, in walking order.
+/// A run: a stretch of one edge, in walking order.
 #[derive(Clone, Debug)]
 struct Run {
     span: DraftSpan,
@@ -49,29 +49,29 @@ struct Run {
 /// A place at which both sides of a seam touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
-    /// Arc length from the start of each side (m).
+    /// Arc length from the start of each side to the place (m).
     pub along: [f64; 2],
-    /// Indices in the draft of the pieces that touch there.
+    /// Indices, in the draft, of the pieces that touch at the place.
     pub pieces: [usize; 2],
     /// Position of the place on each piece, in the piece's plane (m).
     pub places: [Vec2; 2],
-    /// Map that lays the moving piece on the fixed one: from the plane of the one to the plane of the other.
-    /// It mirrors if the piece has to be turned over.
+    /// Map from the plane of the moving piece to the plane of the fixed piece, which lays the moving piece on
+    /// the fixed one. It mirrors if the moving piece has to be turned over.
     pub laid: Affine,
 }
 
-/// The side of a seam whose piece is fixed while the other is laid against it.
+/// The side of a seam whose piece stays fixed, while the piece of the other side is laid against it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FixedSide {
-    /// The first side.
+    /// The piece of the first side stays fixed.
     #[default]
     First,
-    /// The second side.
+    /// The piece of the second side stays fixed.
     Second,
 }
 
 impl FixedSide {
-    /// Index of the fixed side, and of the side that moves.
+    /// Index of the fixed side, and index of the side that moves.
     pub fn sides(self) -> [usize; 2] {
         match self {
             Self::First => [0, 1],
@@ -79,7 +79,7 @@ impl FixedSide {
         }
     }
 
-    /// The other side.
+    /// The other of the two sides.
     #[must_use]
     pub fn other(self) -> Self {
         match self {
@@ -90,7 +90,7 @@ impl FixedSide {
 }
 
 impl Evaluation {
-    /// Length by which one side of a seam may exceed the other (m).
+    /// Length by which one side of a seam may be longer than the other (m).
     pub fn ease(&self, seam: SeamOrigin) -> f64 {
         match seam {
             SeamOrigin::Seam(id) => self.seam_value(id).map_or(0.0, |value| value.ease),
@@ -100,7 +100,7 @@ impl Evaluation {
 }
 
 impl<'d> Walk<'d> {
-    /// The walk of a seam of a draft; none if a span is missing or a side has no length.
+    /// Starts the walk of a seam. `None`: a span is missing or a side has no length.
     pub fn new(draft: &'d Draft, seam: &'d DraftSeam) -> Option<Self> {
         let [first, second] = [0, 1].map(|k| WalkedSide::new(draft, &seam.sides[k]));
         Some(Self {
@@ -110,7 +110,7 @@ impl<'d> Walk<'d> {
         })
     }
 
-    /// The walk of a seam of a draft whose sides were measured before.
+    /// Starts the walk of a seam whose sides were measured by an earlier walk.
     pub fn again(draft: &'d Draft, seam: &'d DraftSeam, sides: &WalkSides) -> Self {
         Self {
             draft,
@@ -119,18 +119,19 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// Both measured sides, for starting the walk again.
+    /// The measured sides, for [`Self::again`].
     pub fn sides(&self) -> WalkSides {
         self.sides.clone()
     }
 
-    /// Arc length of each side, mouths of darts left out (m).
+    /// Arc length of each side, without the mouths of darts (m).
     pub fn lengths(&self) -> [f64; 2] {
         [self.sides.0[0].length, self.sides.0[1].length]
     }
 
-    /// The place at which both sides touch at an arc length of the first (m), clamped to its range. The place
-    /// on the second side is in proportion to its length, so that ease is spread evenly, as in sewing.
+    /// The place at which both sides touch, by its arc length on the first side (m), which is limited to that
+    /// side. The place on the second side is at the same share of its length, so that ease is spread evenly,
+    /// as in sewing.
     pub fn contact(&self, along: f64, fixed: FixedSide) -> Contact {
         let [first, second] = self.lengths();
         let along = along.clamp(0.0, first);
@@ -138,8 +139,8 @@ impl<'d> Walk<'d> {
         let at = [0, 1].map(|k| self.sides.0[k].at(along[k]));
         let places = at.map(|(_, place, _)| place);
         let directions = at.map(|(_, _, direction)| direction);
-        // The cloth lies left of the walk on one piece and right of it on the other; otherwise the moving
-        // piece is turned over.
+        // The cloth must lie left of the walk on one piece and right of it on the other. Where this is not
+        // so, the moving piece is turned over.
         let left = [0, 1].map(|k| self.cloth_is_left(at[k].0));
         let turned_over = left[0] == left[1];
         let [base, moved] = fixed.sides();
@@ -158,8 +159,8 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// Arc length of the first side at the place on a piece's seam line that is nearest to a point of its
-    /// plane (m); none if that side has no stretch on the piece.
+    /// Arc length, on the first side, of the place on the seam line of a piece that is nearest to the point
+    /// `to` of the piece's plane (m). `None`: the side `side` has no stretch on the piece.
     pub fn nearest(&self, side: usize, piece: usize, to: Vec2) -> Option<f64> {
         let own = self.sides.0[side].runs.iter();
         let own = own.filter(|run| run.span.piece == piece);
@@ -175,8 +176,8 @@ impl<'d> Walk<'d> {
         Some(along / self.sides.0[side].length * self.sides.0[0].length)
     }
 
-    /// The stretches of a side on their pieces, in walking order: index of the piece, and the seam
-    /// line in its plane (m).
+    /// The stretches of a side on their pieces, in walking order: each with the index of its piece, and the
+    /// seam line in the plane of that piece (m).
     pub fn lines(&self, side: usize) -> impl Iterator<Item = (usize, &Path)> {
         let runs = self.sides.0[side].runs.iter();
         runs.map(|run| (run.span.piece, &run.path))
@@ -190,7 +191,7 @@ impl<'d> Walk<'d> {
     }
 }
 
-/// Whether cloth lies left of the rings of a piece: then its outline is wound counter-clockwise.
+/// Whether the cloth of a piece lies left of its rings; its outline then runs counter-clockwise.
 fn cloth_is_left(piece: &Piece) -> bool {
     let edges = piece.outline.iter();
     edges.map(|edge| edge.curve.swept_area()).sum::<f64>() >= 0.0
@@ -202,13 +203,14 @@ fn rings(piece: &Piece) -> impl Iterator<Item = &[PieceEdge]> {
     std::iter::once(piece.outline.as_slice()).chain(holes)
 }
 
-/// The edge of a span.
+/// The edge that a span lies on.
 fn edge_of<'d>(draft: &'d Draft, span: &DraftSpan) -> Option<&'d PieceEdge> {
     let piece = draft.pieces.get(span.piece)?;
     rings(piece).flatten().nth(span.edge)
 }
 
-/// The rigid map that takes one point and direction to another; turned over, left becomes right.
+/// The rigid map that takes the point `from` to `to` and the direction `was` to `along`; if `turned_over`, it
+/// mirrors.
 fn laying([(to, along), (from, was)]: [(Vec2, Vec2); 2], turned_over: bool) -> Affine {
     let left = |v: Vec2| Vec2::new(-v.y, v.x);
     let side = if turned_over { -1.0 } else { 1.0 };
@@ -241,8 +243,8 @@ impl WalkedSide {
         can_be_walked.then_some(Self { runs, length })
     }
 
-    /// Run, position and direction at an arc length (m). At the joint of two runs they are those of the
-    /// second run.
+    /// Run, position and unit direction at an arc length of the side (m). Where two runs meet, they are those
+    /// of the second run.
     fn at(&self, along: f64) -> (&Run, Vec2, Vec2) {
         let last = self.runs.len() - 1;
         let k = self.runs.partition_point(|run| run.start <= along);
@@ -250,7 +252,7 @@ impl WalkedSide {
         let place = run.path.at_length(along - run.start);
         let at = place.map_or_else(Vec2::zeros, |place| run.path.point(place));
         let own = place.and_then(|place| run.path.direction(place));
-        // If the derivative of the curve vanishes, as with a handle at its end, the chord of the run gives
+        // If the derivative of the curve vanishes, as with a handle of length 0, the chord of the run gives
         // the direction.
         let chord = || {
             let ends = run.path.curves().first().zip(run.path.curves().last());

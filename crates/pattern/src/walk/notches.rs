@@ -4,11 +4,11 @@ use super::{Run, Walk, WalkedSide};
 use crate::NotchId;
 use toile_geometry::{Curve, Vec2};
 
-/// Greatest distance along the seam between a notch and its partner (m).
+/// Greatest distance, along the seam, between a notch and its partner on the other side (m).
 pub const NOTCH_REACH: f64 = 0.01;
-/// Greatest distance at which notches meet (m): the width of a cut notch.
+/// Greatest distance at which a notch and its partner meet (m): the width of a cut notch.
 pub const NOTCHES_MEET: f64 = 0.001;
-/// A notch this near to a seam line lies on it (m).
+/// Largest distance from a seam line at which a notch counts as on it (m).
 const ON_LINE: f64 = 1e-6;
 
 /// A notch on a side of a seam.
@@ -24,17 +24,18 @@ pub struct WalkedNotch {
     pub at: Vec2,
     /// Arc length from the start of the side (m).
     pub along: f64,
-    /// Distance along the other side from the place opposite this notch to its partner (m), positive beyond;
-    /// none if no partner lies within [`NOTCH_REACH`] that is not nearer to another notch. Without
-    /// such a notch the partner is an end of the other side that this notch meets, else a closed dart or a
-    /// joint between two pieces within that reach.
+    /// Distance along the other side, from the place opposite this notch to its partner (m); positive if the
+    /// partner lies further on. The partner is the nearest notch of the other side, if this notch is also the
+    /// nearest to it and both are within [`NOTCH_REACH`]. Without such a notch it is an end of the other
+    /// side, within [`NOTCHES_MEET`], else a closed dart or a joint between two pieces, within
+    /// [`NOTCH_REACH`]. `None`: the notch has no partner.
     pub partner: Option<f64>,
     /// The piece of the partner, if the partner is a notch.
     pub partner_piece: Option<usize>,
 }
 
 impl WalkedNotch {
-    /// Whether the notch meets its partner.
+    /// Whether the notch meets its partner when the seam is sewn.
     pub fn meets(&self) -> bool {
         self.partner
             .is_some_and(|apart| apart.abs() <= NOTCHES_MEET)
@@ -86,7 +87,7 @@ impl Walk<'_> {
         all
     }
 
-    /// The notches of one side, each once.
+    /// The notches of one side; each is listed once.
     fn notches_of(&self, side: usize) -> Vec<WalkedNotch> {
         let mut found: Vec<WalkedNotch> = Vec::new();
         for run in &self.sides.0[side].runs {
@@ -123,7 +124,7 @@ impl Walk<'_> {
 }
 
 impl WalkedSide {
-    /// Arc lengths at which darts in the side are closed, or one piece ends and the next begins (m).
+    /// Arc lengths at which darts in the side are closed, or at which one piece ends and the next begins (m).
     fn joins(&self) -> Vec<f64> {
         let is_join = |pair: &&[Run]| {
             let [before, after] = [&pair[0], &pair[1]];
@@ -137,7 +138,7 @@ impl WalkedSide {
     }
 }
 
-/// Signed distance from a goal to the nearest of some positions.
+/// Signed distance from a goal to the nearest of some places (m). `None`: there are no places.
 fn least(places: &[f64], goal: f64) -> Option<f64> {
     let away = places.iter().map(|place| place - goal);
     away.min_by(|a, b| a.abs().total_cmp(&b.abs()))
