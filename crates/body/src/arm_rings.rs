@@ -3,10 +3,10 @@
 use crate::{Loop, Scan};
 use toile_geometry::Vec3;
 
-/// A section of the left arm: its middle (m) and girth (m).
+/// A section of the left arm: its centre (m) and girth (m).
 pub(crate) type Ring = (Vec3, f64);
 
-/// Tip of the left hand: the point farthest out, with a smaller weight for how far down it is.
+/// Tip of the left hand: the point that is farthest out sideways, with a smaller weight on being far down.
 pub(crate) fn finger_tip(scan: &Scan) -> Vec3 {
     let height = scan.height();
     let reach = |p: &Vec3| p.x - 0.3 * p.y;
@@ -18,7 +18,7 @@ pub(crate) fn finger_tip(scan: &Scan) -> Vec3 {
 }
 
 /// Sections of the left arm from the finger tips to its junction with the trunk, each square to the line
-/// through the middles of the sections.
+/// through the centres of the sections.
 pub(crate) fn arm_rings(scan: &Scan, tip: Vec3, armpit: f64) -> Vec<Ring> {
     let height = scan.height();
     let step = 0.012 * height;
@@ -33,7 +33,7 @@ pub(crate) fn arm_rings(scan: &Scan, tip: Vec3, armpit: f64) -> Vec<Ring> {
         let Some((centre, girth)) = ring_at(scan, origin, along, rings.len() < 9) else {
             break;
         };
-        // At the trunk the section grows at once.
+        // Where the arm joins the trunk, the girth of the section grows suddenly.
         let before = rings.iter().rev().take(4).map(|r| r.1);
         let usual = before.clone().sum::<f64>() / before.count().max(1) as f64;
         let grown = rings.len() > 14 && girth > 1.35 * usual;
@@ -54,7 +54,8 @@ pub(crate) fn arm_rings(scan: &Scan, tip: Vec3, armpit: f64) -> Vec<Ring> {
     rings
 }
 
-/// The section square to a direction: the loop nearest to `origin`, or all loops near it on a hand.
+/// The section square to a direction: the loop nearest to `origin`, or on a hand all loops near it (the
+/// fingers).
 fn ring_at(scan: &Scan, origin: Vec3, along: Vec3, is_hand: bool) -> Option<Ring> {
     let first = along.cross(&Vec3::z()).try_normalize(1e-6)?;
     let second = first.cross(&along);

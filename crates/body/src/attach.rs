@@ -8,8 +8,8 @@ use toile_geometry::Vec3;
 /// A primitive that moves with a joint, rigidly or also changing with the angle of a reference joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedPrimitive {
-    /// The joint it is fixed to. By default this is the end nearer to the root of the bone that the primitive
-    /// lies round.
+    /// The joint that the primitive is fixed to. By default it is the root-side end of the bone that the
+    /// primitive lies round.
     pub joint: Joint,
     /// The primitive, its centre and rotation in the joint's frame.
     pub local: Primitive,
@@ -40,7 +40,7 @@ impl AttachedPrimitive {
         let body_from_joint = frames.body_from_joint(self.joint);
         let centre = body_from_joint * nalgebra::Point3::from(local.centre);
         let turn = body_from_joint.rotation;
-        // At rest nothing is turned: the numbers stay exactly the same.
+        // At rest no joint is turned: the numbers stay exactly the same.
         let rotation = if turn == nalgebra::UnitQuaternion::identity() {
             local.rotation
         } else {

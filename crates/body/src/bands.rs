@@ -1,5 +1,5 @@
-//! An index of a template's triangles by height, distance along the arm and distance from the middle, so that
-//! a tape tests few of them.
+//! An index of a template's triangles by height, distance along the arm and distance from the median plane,
+//! so that a tape tests few of them.
 
 use crate::Part;
 use crate::definitions::NECK_TILT;
@@ -14,20 +14,20 @@ pub(crate) enum Near {
     Neck([f64; 2]),
     /// Distances from the shoulder joint along the arm (m).
     Arm([f64; 2]),
-    /// Distances from the middle, and heights above the floor (m).
+    /// Distances from the median plane, and heights above the floor (m).
     Side([f64; 2], [f64; 2]),
 }
 
 impl Near {
-    /// Near a range of distances from the middle of a body (m) that is scaled sideways by `least` to `most`,
-    /// between heights of the template (m).
+    /// The range of the template (m) for a range of distances from the median plane of the body (m), which is
+    /// scaled sideways by `least` to `most`, between heights of the template (m).
     pub(crate) fn side(places: [f64; 2], [least, most]: [f64; 2], heights: [f64; 2]) -> Self {
         let [low, high] = [places[0].min(places[1]), places[0].max(places[1])];
         Self::Side([low / most - 0.025, high / least + 0.025], heights)
     }
 }
 
-/// The left half's triangles with the position of their first corner, in ascending order.
+/// The triangles of the left half, sorted in several ways by the position of their first corner.
 pub(crate) struct Bands {
     level: Vec<(f64, u32)>,
     neck: Vec<(f64, u32)>,
@@ -35,7 +35,7 @@ pub(crate) struct Bands {
     side: Vec<(f64, u32)>,
     /// Heights of the first corners of triangles, in the order of `side`.
     side_level: Vec<f64>,
-    /// Number of vertices of the left half and the middle: these come first.
+    /// Number of vertices of the left half and the median plane: these come first in the mesh.
     vertices: usize,
 }
 
@@ -66,7 +66,7 @@ impl Bands {
         }
     }
 
-    /// Number of vertices of the left half and the middle.
+    /// Number of vertices of the left half and the median plane.
     pub(crate) fn vertices(&self) -> usize {
         self.vertices
     }

@@ -6,7 +6,7 @@ use crate::warp::{Follow, Warp};
 use crate::{Joint, Part, Primitive, Skeleton};
 use toile_geometry::Vec3;
 
-/// The skeleton of the body that a template is carried to.
+/// The skeleton of the body that a template is mapped to by `warp`.
 pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     let carried = |joint: Joint| {
         let follow = match joint {
@@ -34,7 +34,7 @@ pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     }))
 }
 
-/// Position on a template of a joint of the middle or the left side (m).
+/// Position on a template of a joint of the left side or the median plane (m).
 pub(crate) fn place(joints: &Joints, joint: Joint) -> Vec3 {
     let [hip, pelvis, chest, neck, head] = [
         joints.hip,
@@ -73,7 +73,7 @@ pub(crate) fn place(joints: &Joints, joint: Joint) -> Vec3 {
 const LUMBAR: f64 = 1.0 / 3.0;
 /// Position of the instep's joint, as a share of the way from ankle to toes; its height is half the ankle's.
 const INSTEP: f64 = 0.4;
-/// Distance of a collar's inner end from the middle, over the distance of the shoulder joint.
+/// Distance of a collar's inner end from the median plane, over the distance of the shoulder joint.
 const COLLAR: f64 = 0.15;
 
 /// The joint that a primitive of a template is fixed to: among the bones that may carry its part, the one
@@ -114,7 +114,7 @@ pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
     let centre = Vec3::from(primitive.centre);
     let mut best = (Joint::HumanoidRoot, f64::INFINITY);
     for (joint, end) in bones {
-        // A primitive in the middle of the trunk moves with neither collar.
+        // A primitive in the median plane of the trunk moves with neither collar.
         let middle = primitive.part == Part::Trunk && primitive.centre[0] == 0.0;
         if middle && joint.mirrored() != joint {
             continue;
@@ -127,7 +127,7 @@ pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
     best.0
 }
 
-/// Length of a hand over stature.
+/// Length of a hand as a share of stature.
 const HAND: f64 = 0.1;
 
 /// Distance of a point from a straight bone (m).

@@ -7,8 +7,8 @@ use toile_realtime::{
     Character, CharacterEllipsoid, CharacterJoint, Ellipsoids, Field, Group, KeyPose, KeyedClip,
 };
 
-/// Share of the skin nearest to an ellipsoid that is to lie inside it. At a share of 1 the ellipsoids beside
-/// a crease would swell.
+/// Share of the skin nearest to an ellipsoid that must lie inside the ellipsoid. At a share of 1 the
+/// ellipsoids beside a crease would swell.
 const COVERED: f32 = 0.9;
 
 /// Largest enlargement of an ellipsoid (m).
@@ -32,9 +32,8 @@ fn single(v: Vec3) -> [f32; 3] {
 
 impl Mannequin {
     /// The body as a character with some named clips: an ellipsoid for every primitive, in groups by part.
-    /// All other groups touch the trunk, and nothing else. Where primitives blend, the skin lies outside
-    /// their own ellipsoids: each ellipsoid is enlarged until most of the skin that it is nearest to lies
-    /// within.
+    /// Every other group touches only the trunk. Where primitives blend, the skin lies outside their
+    /// ellipsoids: each ellipsoid is enlarged until it holds most of the skin that it is nearest to.
     ///
     /// # Errors
     /// [`BodyError::NotRigid`] for a primitive that changes with a reference joint: a character's ellipsoids

@@ -23,17 +23,17 @@ pub struct Cleared {
 /// as the clip shows.
 const MAX_SHOULDER: f64 = 25.0 * std::f64::consts::PI / 180.0;
 const MAX_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
-/// Distance over stature from the junction of two parts within which skin is left out: it touches in any
-/// pose.
+/// Distance, as a share of stature, from the junction of two parts within which skin is not checked: there it
+/// touches in any pose.
 const JOINED: f64 = 0.075;
 /// Least number of poses checked per second.
 const LOOKS: f64 = 30.0;
-/// Time to both sides over which turns are held at their largest and then smoothed (s).
+/// Time before and after a turn over which its largest value is held and then smoothed (s).
 const SPREAD: f64 = 0.1;
 /// Halvings in the search for the least turn: to 0.8 degrees of a shoulder.
 const HALVINGS: usize = 5;
-/// Largest distance at which the skin of another part is looked for (m). A limb that lies deeper in it went
-/// through a smaller depth at an earlier moment.
+/// Largest distance at which the skin of another part is looked for (m). A limb that lies deeper in another
+/// part passed through smaller depths at earlier moments.
 const DEEPEST: f64 = 0.08;
 
 /// Limbs that are turned: the left arm, the right arm, both legs alike.
@@ -80,12 +80,12 @@ impl Channel {
     }
 }
 
-/// The skin of a limb away from its joint, and the surface that it keeps away from.
+/// The skin of a limb away from its joint, and the surface of the parts that the limb keeps away from.
 struct Watched {
     channel: &'static Channel,
     vertices: Vec<u32>,
     others: MovingSurface,
-    /// Number in the skin of each vertex of `others`.
+    /// For each vertex of `others`, its number in the skin.
     of_skin: Vec<u32>,
 }
 

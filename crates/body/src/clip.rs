@@ -14,8 +14,8 @@ pub struct Clip {
     pub poses: Vec<Pose>,
     /// Whether the first pose follows the last one.
     pub is_loop: bool,
-    /// Distance over the ground in one round of a loop on the spot, over the leg length (1): moved by it, the
-    /// standing foot stands still. Zero where the poses themselves move the root.
+    /// Distance over the ground in one round of a loop on the spot, over the leg length (1): when the figure
+    /// is moved by this distance, the standing foot stands still. Zero if the poses themselves move the root.
     pub advance: Vec3,
 }
 
@@ -70,8 +70,9 @@ impl Clip {
         pose
     }
 
-    /// A loop between this one (`share` 0) and another (1), taken at the same share of their rounds. It needs
-    /// matched phases, such as those of [`Clip::walk`] and [`Clip::run`]; durations are interpolated too.
+    /// A loop between this one (`share` 0) and `other` (`share` 1), taken at the same share of their rounds.
+    /// The loops must have matched phases, such as those of [`Clip::walk`] and [`Clip::run`]; durations are
+    /// interpolated too.
     pub fn between(&self, other: &Self, share: f64) -> Self {
         let share = share.clamp(0.0, 1.0);
         let count = self.poses.len().max(other.poses.len()).max(1);
@@ -93,9 +94,9 @@ impl Clip {
 }
 
 impl Pose {
-    /// The pose between this one (0) and another (1) by linear blending: each joint's rotation vector is
-    /// evenly mixed, as between frames and animations in Rudomin et al. (2002). It turns neither evenly nor
-    /// the short way; only for comparison with [`Pose::blended`].
+    /// The pose between this one (`share` 0) and `other` (`share` 1) by linear blending: each joint's
+    /// rotation vector is evenly mixed, as between frames and animations in Rudomin et al. (2002). Joints
+    /// turn neither evenly nor the short way; only for comparison with [`Pose::blended`].
     #[must_use]
     pub fn blended_linearly(&self, other: &Self, share: f64) -> Self {
         let mut pose = Self::rest();
@@ -107,8 +108,8 @@ impl Pose {
         pose
     }
 
-    /// The pose between this one (0) and another (1): each joint turns the short way round (Shoemake 1985),
-    /// the root moves evenly.
+    /// The pose between this one (`share` 0) and `other` (`share` 1): each joint turns the short way round
+    /// (Shoemake 1985), the root moves evenly.
     #[must_use]
     pub fn blended(&self, other: &Self, share: f64) -> Self {
         let mut pose = Self::rest();

@@ -10,7 +10,7 @@ pub struct Conflict {
     pub names: Vec<&'static str>,
     /// Size of the disagreement (m).
     pub gap: f64,
-    /// Reason, and what to change.
+    /// Reason for the contradiction, and the change to make.
     pub why: &'static str,
 }
 
@@ -183,7 +183,7 @@ const LOOPS: &[Loop] = &[
     ),
 ];
 
-/// Tolerance of an equality over stature: the accuracy of the tape.
+/// Tolerance of an equality as a share of stature: the accuracy of the tape.
 const SLACK: f64 = 5e-4;
 
 /// Whether `name` is [`UNDER_BUST`] and contradicts other measurements: it is then ignored and does not

@@ -29,7 +29,7 @@ const NECK: f64 = 0.045;
 /// `REACH` along the arm for a tape across it (m): a tilted tape reaches farther than a ring.
 const ARM: f64 = 0.04;
 
-/// Half the length over which the direction of an arm is taken from the middles of its sections (m).
+/// Half the length over which the direction of an arm is computed from the centres of its sections (m).
 const ARM_WAY: f64 = 0.065;
 
 /// Middle of the template's arm at a distance from the shoulder joint (m).

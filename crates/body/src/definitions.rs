@@ -11,7 +11,7 @@ pub(crate) struct BodyMarks {
     pub(crate) crotch: f64,
     /// Height of the armpits over the floor.
     pub(crate) armpit: f64,
-    /// Height of the middle of the knee over the floor.
+    /// Height of the centre of the knee over the floor.
     pub(crate) knee: f64,
     /// Distances of the armpit and of the finger tips along the arm.
     pub(crate) arm: [f64; 2],
@@ -50,7 +50,7 @@ pub(crate) struct Taping {
 /// Tilt of a tape round the neck, lower in front (rad): about square to the axis of the neck, so that the
 /// least girths of necks lie within 2 mm of it.
 pub(crate) const NECK_TILT: f64 = 20.0 * std::f64::consts::PI / 180.0;
-/// Largest distance of the tape from the middle of the neck, over stature.
+/// Largest distance of the tape from the middle of the neck, as a share of stature.
 const NECK_REACH: f64 = 0.03;
 
 /// Heights as shares of the way from crotch to crown.
@@ -58,9 +58,9 @@ const HIPS: [f64; 2] = [0.035, 0.11];
 const WAIST: [f64; 2] = [0.28, 0.35];
 const UNDERBUST: f64 = 0.415;
 const BUST: [f64; 2] = [0.44, 0.50];
-/// Least depth of the bust below the armpits, over stature.
+/// Least depth of the bust below the armpits, as a share of stature.
 pub(crate) const BUST_DROP: f64 = 0.008;
-/// Depth below the crotch at which the thigh is taped, over stature.
+/// Depth below the crotch at which the thigh is taped, as a share of stature.
 pub(crate) const THIGH_DROP: f64 = 0.012;
 /// Height of the knee over the height of the crotch, if it is not given.
 pub(crate) const KNEE: f64 = 0.58;
@@ -69,7 +69,7 @@ const LOWER_THIGH: f64 = 0.15;
 /// Heights over the height of the knee.
 const CALF: [f64; 2] = [0.55, 0.9];
 const ANKLE_MOST: f64 = 0.6;
-/// Least height of the ankle, and heights of the head's girth, over stature.
+/// Least height of the ankle, and heights of the head's girth, as shares of stature.
 const ANKLE_LEAST: f64 = 0.03;
 const HEAD: [f64; 2] = [0.94, 0.97];
 /// Distances as shares of the way along the arm from the armpit to the finger tips.
@@ -135,8 +135,8 @@ impl Taping {
         Some(Self { cut, range, choice })
     }
 
-    /// Position of the girth (m), from the readings of a tape at each position; `None` where there is nothing
-    /// to tape.
+    /// Position of the girth (m), from the readings of a tape at each position; `None` if the body has no
+    /// section in the range.
     pub(crate) fn find(&self, around: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         let [low, high] = self.range;
         if high <= low {

@@ -15,7 +15,8 @@ pub struct Deformation {
     pub joint: Joint,
     /// Axis of the angle, in the joint's frame: only the twist about it counts (1).
     pub axis: [f64; 3],
-    /// Keys in ascending order of angle. At the angle zero, the rest pose, they change nothing.
+    /// Keys in ascending order of angle. At the angle zero, the rest pose, they must leave the primitive
+    /// unchanged.
     pub keys: Vec<DeformationKey>,
 }
 

@@ -16,8 +16,9 @@ pub struct Description {
     pub figure: Figure,
     /// Measurements asked for.
     pub measurements: Measurements,
-    /// The template's primitives of trunk, head, left arm and left leg, before any measurement is applied:
-    /// one off the middle stands for a pair. Empty for the figure's own primitives.
+    /// The template's primitives of trunk, head, left arm and left leg, before any measurement is applied: a
+    /// primitive off the median plane stands for itself and its mirror image. Empty for the figure's own
+    /// primitives.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub primitives: Vec<Primitive>,
     /// Levels and joints of a body that was fitted to a mesh and is used as its primitives describe it;
@@ -100,7 +101,7 @@ impl Mannequin {
     }
 }
 
-/// Refuses a frame that no body has.
+/// Refuses a frame with values that no body can have.
 fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
     let bad = |what: &str| Err(BodyError::Description(format!("the frame {what}")));
     let j = &frame.joints;
@@ -159,7 +160,7 @@ fn sound(frame: &BodyFrame) -> Result<(), BodyError> {
     Ok(())
 }
 
-/// Refuses a primitive that no body has.
+/// Refuses a primitive with values that no body can have.
 pub(crate) fn check(index: usize, p: &Primitive) -> Result<(), BodyError> {
     let bad = |what: &str| Err(BodyError::Description(format!("primitive {index} {what}")));
     let numbers = p.centre.iter().chain(&p.radii).chain(&p.rotation);

@@ -37,7 +37,7 @@ impl Deviation {
     }
 }
 
-/// Largest deviation of a length over stature that is not reported: a millimetre of an adult.
+/// Largest deviation of a length as a share of stature that is not reported: a millimetre of an adult.
 const NAMED: f64 = 5.7e-4;
 impl Mannequin {
     /// Calls a function with the tape on the finished skin.

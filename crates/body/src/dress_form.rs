@@ -5,7 +5,7 @@ use crate::Part;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// A closed, outward surface with the part of each triangle.
+/// A closed surface, oriented outward, with the part of each triangle.
 pub(crate) struct DressForm {
     pub(crate) mesh: TriangleMesh,
     pub(crate) parts: Vec<Part>,
@@ -13,14 +13,15 @@ pub(crate) struct DressForm {
     pub(crate) top: f64,
 }
 
-/// Largest distance from the plane of the neck's end of a vertex that counts as in it, over stature.
+/// Largest distance from the plane of the neck's end at which a vertex counts as in the plane, as a share of
+/// stature.
 const IN_PLANE: f64 = 3e-4;
-/// Height by which plates over neck and armholes bulge, over stature.
+/// Height by which plates over neck and armholes bulge, as a share of stature.
 const BULGE: f64 = 0.006;
-/// Rings of a plate: shares of the distance from its middle to its border.
+/// Rings of a plate: shares of the distance from its centre to its border.
 const PLATE: [f64; 3] = [0.85, 0.6, 0.3];
-/// Rings below the hips: depth under the lowest point of the border, over stature, and share of the border's
-/// distance from its middle.
+/// Rings below the hips: depth under the lowest point of the border, as a share of stature, and share of the
+/// border's distance from its centre.
 const SKIRT: [[f64; 2]; 6] = [
     [0.015, 1.0],
     [0.03, 0.995],
@@ -212,7 +213,7 @@ impl DressForm {
         }
     }
 
-    /// Closes a border by a plate that bulges outward in its middle.
+    /// Closes a border by a plate that bulges outward at its centre.
     fn plate(&mut self, border: &[u32], bulge: Vec3, part: Part) {
         let middle = self.middle(border);
         let edge: Vec<Vec3> = border.iter().map(|&v| self.at(v)).collect();

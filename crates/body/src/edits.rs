@@ -9,8 +9,9 @@ use nalgebra::Rotation3;
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// One change of a body's primitives. They are counted from 0 in the order of [`Description::primitives`]:
-/// those of the left side and the middle; one off the middle stands for a pair.
+/// One change of a body's primitives. Primitives are counted from 0 in the order of
+/// [`Description::primitives`]: those of the left side and the median plane; one off the median plane stands
+/// for itself and its mirror image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "edit", deny_unknown_fields)]
 pub enum PrimitiveEdit {
@@ -100,11 +101,11 @@ pub enum PrimitiveEdit {
     },
 }
 
-/// Largest number of primitives of the left side and the middle: five times those of a fitted body.
+/// Largest number of primitives of the left side and the median plane: five times those of a fitted body.
 const MOST: usize = 400;
 
 impl Description {
-    /// The description with its primitives written out: the figure's own if it lists none.
+    /// The description with its primitives written out; if it lists no primitives, those of its figure.
     pub fn with_primitives(&self) -> Self {
         let mut next = self.clone();
         if next.primitives.is_empty() {
@@ -117,8 +118,8 @@ impl Description {
         next
     }
 
-    /// The description with all edits applied in order, or an error and none applied. Whether a skin can
-    /// still be cast on the primitives is only known when a [`crate::Mannequin`] is made.
+    /// The description with all edits applied in order; if one edit is refused, none is applied. Whether a
+    /// skin can still be cast on the primitives is only known when a [`crate::Mannequin`] is made.
     ///
     /// # Errors
     /// [`BodyError::Description`] for a primitive that does not exist, or values that no primitive can have,

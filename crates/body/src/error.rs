@@ -3,7 +3,7 @@
 /// Reason why a mannequin could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
-    /// A value no body has.
+    /// A value that no body has.
     #[error("measurement {name} is {value}: give a value from {low} to {high} ({unit})")]
     OutOfRange {
         /// The measurement.
@@ -27,7 +27,7 @@ pub enum BodyError {
         /// Remedy: the change to make.
         remedy: &'static str,
     },
-    /// A primitive that changes with a joint where only rigid ones are allowed.
+    /// A primitive that changes with a reference joint, although only rigid primitives are allowed.
     #[error(
         "primitive {primitive} changes with a reference joint, and a character's ellipsoids are rigid: take its keys out"
     )]
@@ -38,13 +38,13 @@ pub enum BodyError {
     /// The primitives leave a hole where the skin should be.
     #[error("the primitives of the {part} do not enclose its axis near ({x:.3}, {y:.3}, {z:.3}) m")]
     Open {
-        /// The part.
+        /// Name of the body part.
         part: &'static str,
-        /// Place on the axis (m).
+        /// x of the place on the axis (m).
         x: f64,
-        /// Place on the axis (m).
+        /// y of the place on the axis (m).
         y: f64,
-        /// Place on the axis (m).
+        /// z of the place on the axis (m).
         z: f64,
     },
     /// Landmarks of the skin that are not in the order from floor to crown that bodies have.

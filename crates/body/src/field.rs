@@ -58,7 +58,7 @@ impl Part {
     /// All parts, in order.
     pub const ALL: [Self; Self::COUNT] = toile_geometry::all_variants!();
 
-    /// The corresponding part of the other side; trunk and head are their own.
+    /// The corresponding part of the other side; trunk and head correspond to themselves.
     pub fn mirrored(self) -> Self {
         match self {
             Part::LeftArm => Part::RightArm,
@@ -103,7 +103,7 @@ impl Blend {
 /// Ichihara 1987, extended from a sphere to an ellipsoid).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Primitive {
-    /// The group whose densities it adds to.
+    /// The part whose density the primitive adds to.
     pub part: Part,
     /// Centre c (m).
     pub centre: [f64; 3],
@@ -114,10 +114,10 @@ pub struct Primitive {
     /// Factor w of the density (1).
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub weight: f64,
-    /// Whether the density adds to those of others.
+    /// Whether the density adds to the densities of other primitives.
     #[serde(default, skip_serializing_if = "Blend::is_default")]
     pub blend: Blend,
-    /// A second group that it belongs to, for example near a shoulder or hip.
+    /// A second part that the primitive belongs to, for example near a shoulder or hip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub also: Option<Part>,
 }
@@ -176,7 +176,7 @@ impl Primitive {
     }
 
     /// Whether the primitive belongs to the wearer's right side: by its part, or, in trunk and head, by its
-    /// centre. A limb's primitive may reach over the middle.
+    /// centre. A limb's primitive may reach across the median plane.
     pub fn is_right(&self) -> bool {
         match self.part {
             Part::RightArm | Part::RightLeg => true,
@@ -300,7 +300,7 @@ impl Field {
     /// Distance (m) from `origin` along the unit vector `direction` to the first point where the ray leaves
     /// the union of some parts, to 1e-9 m. `None` if `origin` is outside or the distance is more than 0.6 m.
     pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
-        /// Thicker than any limb and than half of any trunk (m).
+        /// Larger than the thickness of any limb and half of any trunk (m).
         const REACH: f64 = 0.6;
         let along = self.along(parts, [origin, direction]);
         let mut distance = 0.0;
@@ -412,8 +412,8 @@ impl Along {
         })
     }
 
-    /// Distance (m) between two others at which the ray leaves the inside, to 1e-9 m: Newton's method kept
-    /// between the ends, bisection where it leaves them.
+    /// Distance (m) between two given distances at which the ray leaves the inside, to 1e-9 m: Newton's
+    /// method kept between these ends, bisection where a step would leave the interval.
     fn exit(&self, [mut low, mut high]: [f64; 2]) -> f64 {
         let mut t = 0.5 * (low + high);
         for _ in 0..60 {

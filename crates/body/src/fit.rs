@@ -27,9 +27,9 @@ pub struct Fit {
     pub description: Description,
     /// Distances of the body's skin from the mesh.
     pub misfit: FitMisfit,
-    /// Shift that made the mesh stand on y = 0 with its middle at x = 0 (m).
+    /// Shift that made the mesh stand on y = 0 centred at x = 0 (m).
     pub shift: Vec3,
-    /// Measurements whose taped values no body has: they are not in the description.
+    /// Measurements whose taped values no body has: they are left out of the description.
     pub dropped: Vec<&'static str>,
 }
 
@@ -180,15 +180,15 @@ impl CandidateSkin {
 }
 
 /// Casts the skin. The levels of armpits and crotch are chosen one after the other so that the skin is
-/// nearest to the mesh there: few levels are free between a thick arm and a full trunk, and between thighs
-/// that touch.
+/// nearest to the mesh at that level: between a thick arm and a full trunk, and between thighs that touch,
+/// only few levels can be cast.
 fn cast_best(
     scan: &Scan,
     found: &mut FoundFrame,
     primitives: &[Primitive],
 ) -> Result<(TemplateSkin, Scan), BodyError> {
     /// Steps tried for a level, smallest first, and distance to both sides within which the mesh is compared,
-    /// over stature.
+    /// as a share of stature.
     const ELSEWHERE: [f64; 6] = [-0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
     const ROUND: f64 = 0.035;
     let height = found.frame.height;
@@ -217,7 +217,8 @@ fn cast_best(
     Ok((best.skin, best.checked))
 }
 
-/// Rounds of casting the skin and moving the samples by its misfit; the result is the best of all rounds.
+/// Number of rounds of casting the skin and moving the samples by its misfit; the result is the best of all
+/// rounds.
 const ROUNDS: usize = 5;
 
 /// Distance of the skin from a sample of the surface.
@@ -229,8 +230,8 @@ struct SurfaceMiss {
     weight: f64,
 }
 
-/// Moves the surface samples of a part by the distance of the skin from them, averaged over a neighbourhood:
-/// the chords of a cast skin lie inside the surface, and a fit has its own bias.
+/// Moves the surface samples of a part by the distance of the skin from them, averaged over a neighbourhood,
+/// to correct two errors: the chords of a cast skin lie inside the surface, and a fit has its own bias.
 fn drawn(samples: &mut [Sample], part: Part, skin: &TemplateSkin, height: f64) {
     let cell = 0.03 * height;
     let mut own = TriangleMesh {

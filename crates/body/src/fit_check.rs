@@ -10,7 +10,7 @@ use toile_geometry::{Vec2, closed_length, convex_hull};
 /// ankles to the chin, without the hands.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitMisfit {
-    /// Root mean square of the distance along rays from the sections' middles (m).
+    /// Root mean square of the distance along rays from the sections' centres (m).
     pub radial: f64,
     /// Largest distance along these rays (m).
     pub radial_max: f64,
@@ -65,10 +65,10 @@ pub struct LevelMisfit {
 const RAYS: usize = 72;
 
 impl FitMisfit {
-    /// One number to choose by: the larger of the radial and the girth misfit, each over its accepted value
-    /// and stature (1). A skin that crosses itself comes last.
+    /// One number by which fits are compared: the larger of the radial and the girth misfit, each divided by
+    /// its accepted value and stature (1). A skin that crosses itself is worse than any that does not.
     pub(crate) fn badness(&self, stature: f64) -> f64 {
-        /// Accepted misfits of an adult's fit over stature: 2 mm radially and 3 mm in girth.
+        /// Accepted misfits of an adult's fit as a share of stature: 2 mm radially and 3 mm in girth.
         const MAY: [f64; 2] = [2e-3 / 1.7, 3e-3 / 1.7];
         let over = (self.radial / MAY[0]).max(self.girth / MAY[1]) / stature;
         over + 100.0 * self.self_crossings as f64
@@ -163,8 +163,8 @@ pub(crate) fn tape(loops: &[Loop]) -> f64 {
     closed_length(&convex_hull(&points))
 }
 
-/// Differences along rays from the middle of the mesh's section between the outermost crossings of skin and
-/// mesh (m).
+/// Differences along rays from the centre of the mesh's section: the outermost crossing with the skin minus
+/// the outermost crossing with the mesh (m).
 fn distances([mesh, skin]: &[Vec<Loop>; 2]) -> Vec<f64> {
     let longest = mesh.iter().max_by(|a, b| a.length().total_cmp(&b.length()));
     let Some(centre) = longest.map(Loop::centre) else {

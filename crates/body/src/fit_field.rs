@@ -10,7 +10,7 @@ use toile_geometry::Vec3;
 
 /// Largest number of steps tried.
 const STEPS: usize = 150;
-/// Residual, over stature, above which samples count less (Huber 1964).
+/// Residual, as a share of stature, above which samples count less (Huber 1964).
 const FAR: f64 = 0.004;
 /// Margins of the density from the threshold, inside and outside the surface.
 const ROOM: [f64; 2] = [0.05, 0.03];
@@ -32,7 +32,7 @@ struct System {
     sum: f64,
 }
 
-/// Fits the primitives of one part of the left side and the middle, in place.
+/// Fits the primitives of one part of the left side and the median plane, in place.
 pub(crate) fn fit(primitives: &mut [Primitive], goal: &Goal) {
     if primitives.is_empty() || goal.samples.is_empty() {
         return;
@@ -95,7 +95,7 @@ fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
     };
     let weight = primitive.weight * step[9].clamp(-0.3, 0.3).exp();
     primitive.weight = weight.clamp(WEIGHT[0], WEIGHT[1]);
-    // A primitive off the middle stays there: a pair whose halves met would become one.
+    // A primitive off the median plane stays off it: a pair whose halves met would become one.
     if !central && matches!(primitive.part, Part::Trunk | Part::Head) {
         primitive.centre[0] = primitive.centre[0].max(0.004 * height);
     }
@@ -188,7 +188,8 @@ impl System {
         self.add(&rows, long, 1.0, (girth.weight, f64::INFINITY));
     }
 
-    /// Holds the primitives weakly at their start, so that none wanders where no sample determines it.
+    /// Pulls the primitives weakly to their start, so that a primitive that no sample determines does not
+    /// wander.
     fn hold(&mut self, primitives: &[Primitive], start: &[Primitive], height: f64) {
         // The area of a whole body times the square of a residual that matters little.
         let weak = 2e-10 * height.powi(4);

@@ -16,14 +16,15 @@ pub(crate) struct FoundFrame {
     pub(crate) chin: f64,
 }
 
-/// Least distance from crotch to armpits, over stature, and least number of sections from wrist to shoulder.
+/// Least distance from crotch to armpits, as a share of stature, and least number of sections from wrist to
+/// shoulder.
 const MIN_TRUNK: f64 = 0.1;
 const MIN_ARM: usize = 4;
 
-/// Height of the shoulder joint over the armpit, over stature.
+/// Height of the shoulder joint over the armpit, as a share of stature.
 const JOINT_RISE: f64 = 0.037;
 
-/// Finds levels and joints on a mesh that stands on y = 0 with its middle at x = 0.
+/// Finds levels and joints on a mesh that stands on y = 0 centred at x = 0.
 ///
 /// # Errors
 /// [`BodyError::Mesh`] for a level or limb that could not be found, with the landmark to give.
@@ -124,7 +125,7 @@ fn wrist_ring(rings: &[Ring], height: f64) -> usize {
         .unwrap_or(8.min(rings.len() - 1))
 }
 
-/// The elbow: the ring for which two straight bones fit the middles of the rings best; near the middle of a
+/// The elbow: the ring for which two straight bones fit the centres of the rings best; near the middle of a
 /// straight arm.
 fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
     let last = rings.len() - 1;
@@ -136,7 +137,7 @@ fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
             distance(rings[i].0, bone.map(|j| rings[j].0)).powi(2)
         });
         let mean = (bones.sum::<f64>() / (span + 1) as f64).sqrt();
-        // Within the noise of the middles, the usual position decides.
+        // Within the noise of the centres, the usual position of an elbow decides.
         let share = (k - wrist) as f64 / span as f64;
         mean + 0.02 * (share - 0.52).powi(2) * (rings[last].0 - rings[wrist].0).norm()
     };
@@ -147,7 +148,7 @@ fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
 }
 
 /// The shoulder joint: on the line of the upper arm, at the usual height above the armpit; for level arms, at
-/// the usual distance from the middle.
+/// the usual distance from the median plane.
 fn shoulder_joint(rings: &[Ring], elbow: Vec3, armpit: f64, height: f64) -> Vec3 {
     let last = rings[rings.len() - 1].0;
     let along = (last - elbow).normalize();
@@ -191,8 +192,8 @@ fn leg(scan: &Scan, crotch: f64) -> Option<[Vec3; 4]> {
     Some([hip, knee, ankle, toe])
 }
 
-/// The neck: height and depth of its base, a distance from the middle that lies outside it, and the height of
-/// its narrowest section (m).
+/// The neck: height and depth of its base, a distance from the median plane that lies outside the neck, and
+/// the height of its narrowest section (m).
 struct Neck {
     base: f64,
     depth: f64,
@@ -211,7 +212,8 @@ fn neck(scan: &Scan, armpit: f64) -> Option<Neck> {
         .filter_map(|y| Some((y, scan.trunk(y)?)))
         .min_by(|a, b| a.1.girth().total_cmp(&b.1.girth()))?;
     let radius = 0.8 * least.extent()[0];
-    // The base is the highest level at which the slope of the shoulders is as wide as twice the radius.
+    // The base is the highest level at which the section through the shoulders is as wide as twice the neck's
+    // radius.
     let base = levels(armpit, narrowest)
         .filter(|&y| scan.trunk(y).is_some_and(|l| l.extent()[0] >= 2.0 * radius))
         .fold(armpit, f64::max);

@@ -23,13 +23,15 @@ pub(crate) struct GirthResidual {
     pub(crate) weight: f64,
 }
 
-/// Distance between tapes, over stature. They lie half-way between the levels that a fit is judged by.
+/// Distance between tapes, as a share of stature. The tapes lie half-way between the levels at which a fit is
+/// judged.
 const SPACING: f64 = 0.005;
-/// Weight of the mean misfit of a section over the weight of the misfit itself, for each round.
+/// Weight of the mean misfit of a section, which its girth shows, over the weight of the misfit of single
+/// samples (1); multiplied by the number of the round.
 const STRESS: f64 = 8.0;
 /// Corners of a hull are merged up to this turn (rad).
 const TURN: f64 = TAU / 64.0;
-/// Largest change asked of a tape at a time, over stature.
+/// Largest change asked of a tape at a time, as a share of stature.
 const FAR: f64 = 0.012;
 
 /// The tapes of each of [`PARTS`]: the difference in girth between a skin cast from primitives and the mesh,
@@ -115,10 +117,10 @@ fn corners(loops: &[Loop], y: f64) -> Vec<(Vec3, f64)> {
     all
 }
 
-/// Number in [`PARTS`] of the part that a corner belongs to: of the parts whose surfaces the skin follows
-/// there, the one that lies farthest out.
+/// Index in [`PARTS`] of the part that a corner belongs to: of the parts whose surfaces the skin follows at
+/// the corner, the one that lies farthest out.
 fn outermost(surfaces: &[Surface], level: LevelPart, p: Vec3, found: &FoundFrame) -> usize {
-    /// Distance within which two parts overlap, over stature.
+    /// Distance within which two parts overlap, as a share of stature.
     const MEET: f64 = 0.018;
     let frame = &found.frame;
     let (j, meet) = (&frame.joints, MEET * frame.height);
@@ -131,7 +133,7 @@ fn outermost(surfaces: &[Surface], level: LevelPart, p: Vec3, found: &FoundFrame
             }
         }
         LevelPart::Arm => parts.push(Part::LeftArm),
-        // Lower down, a section of the trunk contains no arms.
+        // Well below the armpit, a section of the trunk contains no arms.
         LevelPart::Trunk => {
             let shoulder = Vec3::from(j.shoulder);
             let along = (Vec3::from(j.elbow) - shoulder).normalize();

@@ -11,11 +11,11 @@ use toile_geometry::{SurfaceTree, TriangleMesh, Vec2, Vec3};
 /// Condition on the density at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum DensityTarget {
-    /// Equal to the threshold: the surface is here.
+    /// Equal to the threshold: the surface of the part passes through the sample.
     Surface {
         /// Outward normal of the surface.
         normal: Vec3,
-        /// Original point of the mesh, wherever the sample has been moved since (m).
+        /// Original point of the mesh; the sample may have been moved since (m).
         own: Vec3,
     },
     /// Above the threshold by a margin: inside the part.
@@ -24,11 +24,11 @@ pub(crate) enum DensityTarget {
     Beyond,
     /// Nearly 0: far outside the surface.
     Far,
-    /// At most the threshold: another part's surface is here.
+    /// At most the threshold: the surface of another part passes through the sample.
     Below,
 }
 
-/// A point of the left half with the condition on the density there and its area (m2).
+/// A point of the left half, the condition on the density at the point, and the area that it stands for (m2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub(crate) place: Vec3,
@@ -44,10 +44,10 @@ struct Spot {
     is_arm: bool,
 }
 
-/// Parts that are fitted: the others are their mirror images.
+/// Parts that are fitted; the parts of the right side are mirror images.
 pub(crate) const PARTS: [Part; 4] = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg];
 
-/// Distances from the surface of the samples inside and outside, over stature.
+/// Distances from the surface of the samples inside and outside, as a share of stature.
 const DEPTH: [f64; 2] = [0.010, 0.007];
 
 /// The samples of each of [`PARTS`].
@@ -78,7 +78,7 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
                     normal: spot.normal,
                     own: spot.place,
                 };
-                // On a slope, a level section sees the distance enlarged.
+                // On a slope, the distance in a level section is larger than the distance along the normal.
                 let level = spot.normal.x.hypot(spot.normal.z);
                 let seen = match part {
                     Part::Trunk => 1.0 / (0.2 + level * level),
@@ -122,7 +122,7 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
     })
 }
 
-/// Height over stature above which a head has no cavities.
+/// Height as a share of stature above which a head has no cavities.
 const TOP: f64 = 0.975;
 
 /// The outermost points of a head's level sections on the left: mouth, nose and ears have inner surfaces that
@@ -163,7 +163,7 @@ fn head_spots(
     all
 }
 
-/// The middle of every triangle, folded to the left, and whether it belongs to an arm.
+/// The centre of every triangle, folded to the left, and whether it belongs to an arm.
 fn spots(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<Spot> {
     let is_arm = arms(mesh, found);
     let normals = mesh.face_normals();
@@ -254,7 +254,7 @@ impl<'a> Zones<'a> {
         let f = &found.frame;
         let scale = f.height / 1.7;
         let shoulder = Vec3::from(f.joints.shoulder);
-        // The same height as that of the skin's rays over the shoulder.
+        // The same height as the origin of the skin's rays over the shoulder.
         let base = f.armpit - FAN * scale;
         Self {
             found,
@@ -263,8 +263,8 @@ impl<'a> Zones<'a> {
         }
     }
 
-    /// Distance of a point inside the opening for the arm in the trunk's rays, over its margin: above 1 well
-    /// inside, below 0 well outside.
+    /// Signed distance of a point from the border of the opening for the arm in the trunk's rays, divided by
+    /// its margin: above 1 well inside the opening, below 0 well outside.
     fn opening(&self, p: Vec3) -> f64 {
         let offset = p - self.focus;
         let azimuth = (offset.x.atan2(offset.z) - std::f64::consts::FRAC_PI_2).abs();
@@ -277,7 +277,8 @@ impl<'a> Zones<'a> {
         sides.min(above).min(below) + 0.5
     }
 
-    /// Weight of a spot as a point of a part's own surface, and as one of another part's.
+    /// Weight of a spot as a point of the part's own surface, and weight as a point of another part's
+    /// surface.
     fn shares(&self, part: Part, spot: &Spot) -> [f64; 2] {
         let f = &self.found.frame;
         let (p, h) = (spot.place, f.height);
@@ -320,8 +321,8 @@ impl<'a> Zones<'a> {
         [own, if own > 0.0 { 0.0 } else { 1.0 }]
     }
 
-    /// Whether a point outside a spot belongs to another limb or to the trunk, where the spot's limb must not
-    /// be.
+    /// Whether a point near a spot, on its outer side, belongs to another limb or to the trunk, so that the
+    /// limb of the spot must not reach there.
     fn is_alien(&self, part: Part, spot: &Spot, place: Vec3) -> bool {
         let f = &self.found.frame;
         match part {
@@ -350,7 +351,7 @@ impl<'a> Zones<'a> {
             _ => vec![hip, knee, ankle, instep, foot],
         };
         let spacing = 0.01 * f.height;
-        // Points behind the arms, from which the first rings of the arms are cast.
+        // Points inside the trunk behind the arms, from which the first rings of the arms are cast.
         let side = |y: f64| Vec3::new(0.75 * shoulder.x, y, shoulder.z);
         let low = shoulder.y - 0.07 * f.height;
         let inner = match part {

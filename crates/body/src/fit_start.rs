@@ -10,7 +10,7 @@ use toile_geometry::Vec3;
 /// Pairs of primitives along a leg: with them both sides of a body have 150 in all.
 const PAIRS: usize = 9;
 
-/// The body to carry from, or the one to carry to.
+/// One of the two bodies: the body to carry primitives from, or the body to carry them to.
 struct Side<'a> {
     scan: &'a Scan,
     frame: &'a BodyFrame,
@@ -29,8 +29,8 @@ impl Side<'_> {
         }
     }
 
-    /// Half breadth, half depth and depth of the middle of the trunk at a height (m); below the crotch and
-    /// above the armpit those at the end of the trunk.
+    /// Half breadth, half depth and depth of the centre of the trunk at a height (m); below the crotch and
+    /// above the armpit, the values at the end of the trunk.
     fn trunk(&self, y: f64) -> [f64; 3] {
         let f = self.frame;
         let armpit = f.joints.shoulder[1] - 0.05 * f.height;
@@ -54,7 +54,7 @@ impl Side<'_> {
         Some(near.girth())
     }
 
-    /// Heights that correspond on two bodies: floor, crotch, shoulder, base of the neck, crown.
+    /// Heights that correspond to each other on two bodies: floor, crotch, shoulder, base of the neck, crown.
     fn heights(&self) -> [f64; 5] {
         let f = self.frame;
         [
@@ -67,7 +67,7 @@ impl Side<'_> {
     }
 }
 
-/// The primitives of the left side and the middle of the woman's figure, carried to a mesh.
+/// The primitives of the left side and the median plane of the woman's figure, carried to a mesh.
 pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitive> {
     let template = Template::of(Figure::Woman);
     let frame = BodyFrame {

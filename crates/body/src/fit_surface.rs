@@ -20,7 +20,7 @@ struct Ready {
     central: bool,
 }
 
-/// The implicit surface of one part of the left side and the middle.
+/// The implicit surface of one part of the left side and the median plane.
 pub(crate) struct Surface {
     all: Vec<Ready>,
 }
@@ -115,8 +115,8 @@ impl Surface {
         (value, gradient)
     }
 
-    /// Distance of the surface outside a point in the level plane, to first order (m), and the slope of the
-    /// density in that plane (1/m).
+    /// Distance in the level plane by which the surface lies outside a point, to first order (m), and the
+    /// slope of the density in that plane (1/m).
     pub(crate) fn beyond(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, f64) {
         /// Least share of the slope in the level plane: below it a surface counts as level.
         const LEVEL: f64 = 0.15;
@@ -125,7 +125,7 @@ impl Surface {
         ((value - THRESHOLD) / steep.max(1e-6), steep.max(1e-6))
     }
 
-    /// Lengthening of a tape because the surface lies outside its corners (m).
+    /// Lengthening of a tape if it is laid round the surface instead of through its corners (m).
     pub(crate) fn lengthening(&self, corners: &[(Vec3, f64)]) -> f64 {
         let mut touched = Vec::new();
         corners

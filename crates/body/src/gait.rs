@@ -11,12 +11,12 @@ use toile_geometry::Vec3;
 const FRAMES: usize = 48;
 
 impl Clip {
-    /// Our own walk: one stride of 1.1 s, on the spot; the left heel strikes at phase 0.
+    /// The program's own walk: one stride of 1.1 s, on the spot; the left heel strikes at phase 0.
     pub fn walk(skeleton: &Skeleton) -> Self {
         Self::cycle(skeleton, &WALK)
     }
 
-    /// Our own run: one stride of 0.72 s, on the spot, with the phase of [`Clip::walk`].
+    /// The program's own run: one stride of 0.72 s, on the spot, with the phase of [`Clip::walk`].
     pub fn run(skeleton: &Skeleton) -> Self {
         Self::cycle(skeleton, &RUN)
     }
@@ -99,7 +99,7 @@ struct Side {
     leg: [Joint; 4],
     arm: [Joint; 2],
     sign: f64,
-    /// Delay against the left side, as a share of a stride.
+    /// Delay relative to the left side, as a share of a stride.
     later: f64,
 }
 
@@ -162,9 +162,9 @@ struct Gait {
     /// ground.
     flat: [f64; 2],
     /// Height by which the swinging ankle is lifted above the straight path, and the share of the swing at
-    /// its highest.
+    /// which it is highest.
     lift: [f64; 2],
-    /// Distance of the feet from the middle: 0 under the hips, 1 as far apart as at rest.
+    /// Distance of the feet from the median plane: 0 under the hips, 1 as far apart as at rest.
     apart: f64,
     /// Half the rise and fall of the hips in a step, and the phase of their first lowest position.
     bounce: [f64; 2],

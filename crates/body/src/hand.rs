@@ -36,7 +36,7 @@ impl Half<'_> {
             let at = length * k as f64 / count as f64;
             let axes = [Vec3::z().cross(&along), Vec3::z()];
             let mut centre = wrist + along * at + offset;
-            // Before the web the thumb must not count in the breadth.
+            // Between wrist and web the thumb does not count in the breadth.
             let passes: &[Vec3] = match at > web {
                 true => &[axes[1], axes[0], axes[1], axes[0]],
                 false => &[axes[0]],
@@ -60,7 +60,7 @@ impl Half<'_> {
         self.rounded(frames, along)
     }
 
-    /// The ring planes with more of them towards the tip, so that it is round.
+    /// The ring planes with additional ones towards the tip, so that the tip is round.
     fn rounded(&self, mut frames: Vec<Frame>, along: Vec3) -> Vec<Frame> {
         if let Some(&last) = frames.last()
             && let Some(rest) = (self.field).first_exit(&[Part::LeftArm], last.centre, along)
@@ -73,7 +73,7 @@ impl Half<'_> {
         frames
     }
 
-    /// Distance of the middle of the arm from a point along an axis (m).
+    /// Distance of the centre of the arm from a point along an axis (m).
     fn off_the_middle(&self, point: Vec3, axis: Vec3) -> f64 {
         let exit = |d: Vec3| self.field.first_exit(&[Part::LeftArm], point, d);
         match (exit(axis), exit(-axis)) {
@@ -82,8 +82,8 @@ impl Half<'_> {
         }
     }
 
-    /// Casts an arm whose frames from `wrist` on are those of the hand; without a thumb if the primitives
-    /// have none.
+    /// Casts an arm whose frames from index `wrist` on are the frames of the hand; without a thumb
+    /// if the primitives have no thumb.
     pub(crate) fn arm_with_thumb(
         &mut self,
         mut arm: Limb,
@@ -182,7 +182,7 @@ impl Half<'_> {
     }
 }
 
-/// Ring number from which a limb follows only its own joints.
+/// Ring number of the thumb's border: so high that all rings of the thumb follow only the arm's own joints.
 const HELD: f64 = 100.0;
 
 /// Intersection of a line with the plane of a ring square to `along`.

@@ -4,11 +4,12 @@ use toile_geometry::Vec3;
 
 /// Steepest angle below the horizontal (rad).
 pub(crate) const STEEPEST: f64 = 1.15;
-/// Least distance between arm and trunk, over stature: arms swing and trunks turn.
+/// Least distance between arm and trunk, as a share of stature: arms swing and trunks turn.
 const CLEAR: f64 = 0.012;
-/// Height of the bands in which the breadth of the trunk is stored, over stature.
+/// Height of the bands in which the breadth of the trunk is stored, as a share of stature.
 const BAND: f64 = 0.01;
-/// Distance from the shoulder joint within which the arm is left out, over stature: skin folds there.
+/// Distance from the shoulder joint within which the arm is not checked, as a share of stature: skin folds
+/// there.
 const SHOULDER: f64 = 0.075;
 
 /// Steepest angle below the horizontal (rad) at which the left arm, now at the angle `down`, clears trunk and

@@ -118,7 +118,7 @@ impl Joint {
         TABLE[self as usize].1
     }
 
-    /// The corresponding joint of the other side; a joint of the middle is its own.
+    /// The corresponding joint of the other side; a joint in the median plane corresponds to itself.
     pub fn mirrored(self) -> Self {
         TABLE[self as usize].2
     }

@@ -8,13 +8,13 @@ use crate::template_marks::middle_depth;
 use crate::warp::{Follow, Warp};
 use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 
-/// Named points of a body (m), on its skin except for the middle of the trunk. Pairs are left, +X, then
-/// right. The joints are in [`crate::Mannequin::skeleton`].
+/// Named points of a body (m), on its skin except for those inside the trunk. Pairs are left, +X, then right.
+/// The joints are in [`crate::Mannequin::skeleton`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Landmarks {
     /// Top of the head.
     pub crown: Vec3,
-    /// Underside of the chin: the point of the front middle that lies three quarters of the way forward from
+    /// Underside of the chin: the point of the front midline that lies three quarters of the way forward from
     /// the throat to the foremost point of the chin.
     pub chin: Vec3,
     /// Base of the neck at the back, over the seventh neck vertebra.
@@ -23,15 +23,15 @@ pub struct Landmarks {
     pub neck_sides: [Vec3; 2],
     /// Outer ends of the shoulders.
     pub shoulder_tips: [Vec3; 2],
-    /// Points of the bust.
+    /// Bust points.
     pub bust_points: [Vec3; 2],
-    /// Front middle at the waist.
+    /// Point of the front midline at the waist.
     pub waist: Vec3,
-    /// Front middle at the fullest hip.
+    /// Point of the front midline at the fullest hip.
     pub hips: Vec3,
     /// Lowest point of the trunk between the legs.
     pub crotch: Vec3,
-    /// Middle of the trunk at crotch, hips, waist, bust and base of the neck, from below.
+    /// Centres of the trunk at crotch, hips, waist, bust and base of the neck, from below.
     pub spine: [Vec3; 5],
 }
 
@@ -126,7 +126,7 @@ fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
     a + (b - a) * ((depth - a.z) / (b.z - a.z)).clamp(0.0, 1.0)
 }
 
-/// Largest `side * z` of a section near the middle (m).
+/// Largest `side * z` of a section near the median plane (m).
 fn middle_extreme(section: &[Vec2], side: f64) -> f64 {
     let near = section.iter().filter(|p| p.x.abs() < 0.012);
     near.map(|p| side * p.y).fold(f64::NEG_INFINITY, f64::max)

@@ -8,7 +8,7 @@ use toile_geometry::Vec3;
 const FASTEST_SKIN: f64 = 1.0;
 /// Shortest duration (s).
 const SHORTEST: f64 = 0.4;
-/// Poses per second.
+/// Number of poses per second (1/s).
 const RATE: f64 = 240.0;
 
 /// Share of the motion done at a share of its time, with the least jerk: no speed and no acceleration at both
@@ -42,7 +42,7 @@ impl Clip {
         let clad: Vec<usize> = (0..body.skin().positions.len())
             .filter(|v| !bare(v))
             .collect();
-        // Largest speed of clothed skin over the share of the joints' motion (m).
+        // Largest speed of clothed skin per unit of the share of the motion that is done (m).
         const PARTS: usize = 16;
         let mut fastest = 0.0_f64;
         let mut before = skin_at(0.0);

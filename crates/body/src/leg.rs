@@ -29,9 +29,9 @@ pub(crate) fn length(skeleton: &Skeleton, leg: [Joint; 4]) -> f64 {
     (knee - hip).norm() + (ankle - knee).norm()
 }
 
-/// Turns the joints of a leg so that its ankle comes to a place, or as near to it as the leg reaches, with
-/// the knee bent forward and the foot pointing straight ahead. The joints above the leg are those of the
-/// pose.
+/// Turns the joints of a leg so that its ankle comes to a place, or as near to the place as the leg reaches,
+/// with the knee bent forward and the foot pointing straight ahead. The joints above the leg keep their
+/// rotations of `pose`.
 pub(crate) fn stand(skeleton: &Skeleton, pose: &mut Pose, leg: [Joint; 4], foot: &FootPlace) {
     let [hip, knee, ankle, toes] = leg;
     for joint in leg {

@@ -51,11 +51,11 @@ impl Levels {
 const WAIST_RANGE: [[f64; 2]; 2] = [[0.30, 0.37], [0.28, 0.37]];
 /// Range of the bust's level in which it is the largest girth, as shares of the same way.
 const BUST_RANGE: [f64; 2] = [0.44, 0.56];
-/// Least level of the girth under the bust, as such a share: if it lies lower, the smallest girth below it is
-/// not the waist.
+/// Lowest level of the girth under the bust, as a share of the way from crotch to crown: if the girth lies
+/// lower, the smallest girth below it is not the waist.
 const UNDERBUST_LEAST: f64 = 0.385;
 
-/// Differences between measurements on the skin and differences of their levels (m).
+/// Corrections between lengths measured on the skin and differences of the levels (m).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SkinOffsets {
     /// Height of the landmark on the skin above its level.
@@ -139,14 +139,14 @@ impl System {
     }
 }
 
-/// Standard deviations over stature: of a requested upright length, a requested length over the body, a
-/// prediction, a proportion of the template, and a definition.
+/// Standard deviations as a share of stature: of a requested upright length, a requested length over the
+/// body, a prediction, a proportion of the template, and a definition.
 const ASKED: f64 = 3e-5;
 const ASKED_OVER: f64 = 3e-4;
 const PREDICTED: f64 = 0.02;
 const PROPORTION: f64 = 0.008;
 const DEFINED: f64 = 3e-4;
-/// Height of the neck's side below the nape, over stature.
+/// Height of the neck's side below the nape, as a share of stature.
 const NECK_SIDE_DROP: f64 = 0.020;
 
 /// Heights that meet the lengths of a completed table in the sense of least squares: requested lengths have
@@ -175,7 +175,7 @@ pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffs
         }
         let deviation = match name {
             _ if asked(name) => ASKED,
-            // The survey predicts it better than the template's proportions do.
+            // The survey predicts the armpit height better than the template's proportions do.
             "armpit_height" => PROPORTION,
             _ => PREDICTED,
         };
@@ -274,7 +274,7 @@ fn proportions(
     }
 }
 
-/// Least distance of each landmark above the one before, over stature.
+/// Smallest distance of each landmark above the landmark before it in this list, as a share of stature.
 const ROOM: [(Level, f64); 9] = [
     (Knee, 0.12),
     (Crotch, 0.10),
@@ -287,7 +287,7 @@ const ROOM: [(Level, f64); 9] = [
     (Crown, 0.08),
 ];
 
-/// Heights in order, with the least distances between them.
+/// The heights raised where needed, so that they rise in order with the least distances between them.
 fn in_order(mut heights: [f64; COUNT], height: f64) -> [f64; COUNT] {
     let mut floor = 0.0;
     for (level, room) in ROOM {

@@ -13,7 +13,7 @@ pub(crate) const BENT: f64 = 0.02;
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Exit {
     First,
-    /// The last one: hollows are passed over.
+    /// The last point: hollows are passed over.
     Last,
 }
 
@@ -35,7 +35,7 @@ impl Frame {
         (self.first * angle.cos() + self.second * angle.sin()).normalize()
     }
 
-    /// Angle of a point about the centre (rad).
+    /// Angle of a point about the centre of the ring (rad).
     fn angle(&self, point: Vec3) -> f64 {
         let offset = point - self.centre;
         offset.dot(&self.second).atan2(offset.dot(&self.first))
@@ -45,7 +45,8 @@ impl Frame {
 /// Even angles all round, as near as possible to the angles of the points of a border.
 fn even_angles(border: &[Vec3], frame: &Frame) -> Vec<f64> {
     let step = 2.0 * PI / border.len() as f64;
-    // Mean of the differences to even angles, taken as directions, so that nothing wraps.
+    // Mean of the differences to even angles, taken as directions, so that the mean has no jump at a full
+    // turn.
     let (sin, cos) = border
         .iter()
         .enumerate()
@@ -69,7 +70,7 @@ pub(crate) struct Limb<'a> {
     pub(crate) frames: Vec<Frame>,
     /// Direction from the last frame's centre to the tip.
     pub(crate) tip: Vec3,
-    /// Number of the border's ring: count of rings between it and the trunk.
+    /// Ring number of the border: number of rings between the border and the trunk.
     pub(crate) number: f64,
     /// Opening from which another limb grows.
     pub(crate) gap: Option<Gap>,
@@ -78,9 +79,9 @@ pub(crate) struct Limb<'a> {
 /// The block of a limb's rings that is left open for another limb.
 #[derive(Clone, Copy)]
 pub(crate) struct Gap {
-    /// The first and the last ring plane.
+    /// The first and the last ring plane of the gap.
     pub(crate) frames: [usize; 2],
-    /// The first column.
+    /// The first column of the gap.
     pub(crate) column: usize,
     /// Number of columns from the first to the last.
     pub(crate) columns: usize,
@@ -280,7 +281,7 @@ impl Half<'_> {
         frames
     }
 
-    /// The frame with its centre moved to the middle of the limb.
+    /// The frame with its centre moved to the centre of the limb's section.
     pub(crate) fn recentred(&self, part: Part, frame: Frame) -> Frame {
         let mut centre = frame.centre;
         for axis in [frame.second, -frame.first, frame.second] {
@@ -396,7 +397,7 @@ impl Half<'_> {
         }
     }
 
-    /// Adds a ring of vertices, joined to the one before; where it has no point it is left open.
+    /// Adds a ring of vertices, joined to the ring before; where a point is `None`, the ring is left open.
     fn ring(&mut self, part: Part, from: &[u32], points: &[Option<Vec3>], number: f64) -> Vec<u32> {
         let to: Vec<u32> = points
             .iter()

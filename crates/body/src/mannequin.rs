@@ -49,9 +49,9 @@ pub struct Mannequin {
     pub(crate) crotch: Vec<u32>,
     pub(crate) skeleton: Skeleton,
     pub(crate) landmarks: Landmarks,
-    /// Skin of the whole body, with head, arms and legs: the tape measures this one.
+    /// Skin of the whole body, with head, arms and legs, also for a dress form: the tape measures this skin.
     pub(crate) whole: TriangleMesh,
-    /// The dress form cut from it, if the figure is one.
+    /// The dress form cut from the whole body, if the figure is a dress form.
     form: Option<DressForm>,
     // The following fields are computed from the others when first used.
     tree: OnceLock<SurfaceTree>,
@@ -123,7 +123,7 @@ impl Mannequin {
         Self::grown(measurements, figure, TemplateBody::of(template)?)
     }
 
-    /// The body of a framed template without changes: nothing is solved for.
+    /// The body of a framed template without changes: no measurement is solved for.
     pub(crate) fn still(
         measurements: &Measurements,
         figure: Figure,
@@ -229,7 +229,7 @@ impl Mannequin {
         }
     }
 
-    /// The template's primitives carried by the warp, scaled to lie on the skin, and fixed to joints.
+    /// The template's primitives mapped by the warp, scaled to lie on the skin, and fixed to joints.
     fn fitted_primitives(&self) -> Vec<AttachedPrimitive> {
         let template = &self.template_body.template;
         let own: Vec<Primitive> = template
@@ -335,8 +335,8 @@ impl Mannequin {
     }
 
     /// The ellipsoid primitives of the body, each in the frame of the joint that it is fixed to: a coarse
-    /// description of the body, carried from the template's by the map of the skin and scaled to lie on it. A
-    /// dress form has those of the whole body.
+    /// description of the body. They are mapped from the template's primitives by the map of the skin and
+    /// scaled to lie on the skin. A dress form has those of the whole body.
     pub fn primitives(&self) -> &[AttachedPrimitive] {
         self.primitives.get_or_init(|| self.fitted_primitives())
     }
@@ -381,7 +381,7 @@ fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
     skeleton.hanging(steepest)
 }
 
-/// A primitive carried by the warp: its visible axes are carried, and the left singular vectors and the
+/// A primitive mapped by the warp: its visible axes are mapped, and the left singular vectors and the
 /// singular values of the result are the new axes.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let follow = match primitive.part {
@@ -392,7 +392,7 @@ fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let centre = Vec3::from(primitive.centre);
     let old = *primitive.rotation().matrix();
     let scaled = old * nalgebra::Matrix3::from_diagonal(&Vec3::from(primitive.radii));
-    // Taken over the visible axes, as the map varies across the primitive.
+    // Computed over the visible axes, as the map varies across the primitive.
     let axes = warp.carried_axes(centre, scaled * VISIBLE_RATIO, follow) / VISIBLE_RATIO;
     let svd = axes.svd(true, false);
     let (Some(vectors), values) = (svd.u, svd.singular_values) else {

@@ -34,7 +34,7 @@ pub(crate) struct TapedSkin<'a> {
     pub(crate) marks: &'a TemplateMarks,
     pub(crate) levels: &'a Levels,
     pub(crate) warp: &'a Warp,
-    /// Vertices of the crotch in the middle of the body.
+    /// Vertices of the crotch in the median plane of the body.
     pub(crate) crotch: &'a [u32],
     /// Known positions of girths, as shares of their ranges; other girths are searched for.
     shares: Shares,
@@ -57,7 +57,7 @@ pub(crate) struct TapedSkin<'a> {
 /// Positions of girths, as shares of their ranges (1).
 pub(crate) type Shares = PerGirth<Option<f64>>;
 
-/// The tight line in the middle plane from the waist in front round the crotch to the waist behind.
+/// The tight line in the median plane from the waist in front round the crotch to the waist behind.
 struct Around {
     /// Length of the line (m).
     length: f64,
@@ -68,7 +68,7 @@ struct Around {
 }
 
 impl Around {
-    /// Length of the part in front of a depth (m).
+    /// Length of the part of the line in front of a depth (m).
     fn before(&self, depth: f64) -> f64 {
         part_of(&self.hull, 1.0, depth) - (self.front - depth)
     }
@@ -78,13 +78,14 @@ impl Around {
 /// finds the hips a few millimetres higher or lower.
 const LEVEL_SLACK: f64 = 0.01;
 
-/// Distance below their level at which hips count as lying clearly below, over stature: a centimetre.
+/// Distance below their level at which hips count as lying clearly below, as a share of stature: a
+/// centimetre.
 const BELOW: f64 = 0.006;
 
 /// Halvings of a range in a bisection: to a billionth of it.
 const HALVINGS: usize = 30;
 
-/// Length of the part of a hull on one side of a position on its second axis, without the chord (m).
+/// Length of the part of a hull on one side of a position on its second axis, without the closing chord (m).
 fn part_of(hull: &[Vec2], side: f64, place: f64) -> f64 {
     let moved: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.x, p.y - place)).collect();
     half_length(&moved, side)
@@ -149,7 +150,7 @@ impl<'a> TapedSkin<'a> {
         self.skinned.at(self.armpit[self.armpit.len() / 2])
     }
 
-    /// Hull of a girth's section; round the trunk, at the level given by lengths.
+    /// Hull of the section of a girth; for a girth round the trunk, at the level given by lengths.
     pub(crate) fn hull(&self, girth: Girth) -> Rc<[Vec2]> {
         if let Some(known) = &self.hulls.borrow()[girth] {
             return known.clone();
@@ -202,7 +203,8 @@ impl<'a> TapedSkin<'a> {
         self.skinned.hull(cut.part, cut.plane, Some(cut.near))
     }
 
-    /// Half the breadth of a girth round the trunk, and its height, where it is taped (m).
+    /// Half the breadth of the section of a girth round the trunk, and its height, at the position where the
+    /// girth is taped (m).
     fn side_of(&self, girth: Girth, level: Level) -> [f64; 2] {
         match self.taping(girth).zip(self.place(girth)) {
             Some((taping, place)) => [0.5 * extent(&self.taped_hull(&taping, place))[0], place],
@@ -236,15 +238,15 @@ impl<'a> TapedSkin<'a> {
         Some(place)
     }
 
-    /// Girth round the trunk, if it is searched for, at the level that lengths give it (m).
+    /// Girth round the trunk, if it is searched for, measured at its level given by lengths (m).
     pub(crate) fn at_level(&self, girth: Girth) -> Option<f64> {
         self.taping(girth)?;
         girth.level()?;
         Some(closed_length(&self.hull(girth)))
     }
 
-    /// Such a girth at the section that sets its scale (m): at that level, or at the nearest end of its
-    /// range.
+    /// Girth round the trunk, if it is searched for, at the section that sets its scale (m): at its level
+    /// given by lengths, or at the nearest end of its range.
     pub(crate) fn at_section(&self, girth: Girth) -> Option<f64> {
         let taping = self.taping(girth)?;
         let y = self.levels.at(girth.level()?);
@@ -255,13 +257,14 @@ impl<'a> TapedSkin<'a> {
         Some(self.taped(&taping, if y < low { low } else { high }))
     }
 
-    /// Whether the hips' girth lies clearly below the level that lengths give it.
+    /// Whether the largest hip girth lies clearly below the hips' level given by lengths.
     pub(crate) fn hips_lie_below(&self) -> bool {
         let level = self.levels.at(Level::Hips) - BELOW * self.levels.at(Level::Crown);
         self.place(Girth::Hips).is_some_and(|place| place < level)
     }
 
-    /// Height of the hips (m): the level given by lengths, if the girth there is nearly as large.
+    /// Height of the hips (m): their level given by lengths if the girth there is nearly the largest, else
+    /// the position of the largest girth.
     fn hip_height(&self) -> f64 {
         let level = self.levels.at(Level::Hips);
         let most = self.girth(Girth::Hips);
@@ -287,7 +290,7 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// The same tape with known positions of girths.
+    /// This tape with known positions of girths, so that they are not searched for.
     pub(crate) fn knowing(mut self, shares: Shares) -> Self {
         self.shares = shares;
         self
@@ -422,7 +425,7 @@ impl<'a> TapedSkin<'a> {
     fn taken_crotch(&self) -> Option<Around> {
         let waist = self.levels.at(Level::Waist);
         let parts = &[Part::Trunk, Part::LeftLeg];
-        // Just beside the middle, where the plane crosses whole triangles.
+        // Just beside the median plane, where the section crosses whole triangles.
         let section = self.upright(
             parts,
             [Vec3::x() * 1e-6, Vec3::y()],
@@ -445,7 +448,7 @@ impl<'a> TapedSkin<'a> {
         points.push(Vec2::new(front.y, waist));
         points.push(Vec2::new(-back.y, waist));
         let hull = convex_hull(&points);
-        // The hull with depth as its second axis, for lengths in front of a depth.
+        // The hull with depth as its second axis, to measure the length in front of a depth.
         let turned: Vec<Vec2> = hull.iter().map(|p| Vec2::new(p.y, p.x)).collect();
         Some(Around {
             length: closed_length(&hull) - (front.y + back.y),
@@ -454,7 +457,7 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Depth of the crotch point for which the part in front of it has a length (m).
+    /// Depth of the crotch point for which the part of the line in front of it has the length `before` (m).
     pub(crate) fn crotch_point_of(&self, before: f64, [low, high]: [f64; 2]) -> Option<f64> {
         let around = self.crotch_lengths()?;
         let (mut low, mut high) = (low, high);
@@ -468,12 +471,12 @@ impl<'a> TapedSkin<'a> {
         Some(0.5 * (low + high))
     }
 
-    /// Length of the part of a girth in front of its sides or behind them (m).
+    /// Length of the part of a girth in front of the side lines or behind them (m).
     fn part(&self, girth: Girth, side: f64) -> f64 {
         part_of(&self.hull(girth), side, self.warp.side_of(girth))
     }
 
-    /// Depth of the sides of a girth for which its part on one side has a length (m).
+    /// Depth of the side lines of a girth for which the girth's part on one side has a length (m).
     pub(crate) fn sides_of(&self, girth: Girth, side: f64, length: f64, limit: f64) -> f64 {
         let hull = self.hull(girth);
         let (mut low, mut high) = (-limit, limit);
@@ -566,7 +569,7 @@ impl<'a> TapedSkin<'a> {
     }
 
     /// Breadth of the taped section of the bust at the depth of the front folds of the armpits (m): in front
-    /// of the muscles that run on into arm and back.
+    /// of the muscles that continue into arm and back.
     pub(crate) fn between_folds(&self) -> Option<f64> {
         let fold = self.skinned.at(self.marks.armpit.front_fold);
         breadth_at(&self.hull(Girth::Bust), fold.z)

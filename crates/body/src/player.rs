@@ -13,7 +13,8 @@ pub enum PlayCommand {
     Start,
     /// Stops the clock; the figure keeps its pose.
     Stop,
-    /// Fades to another clip within a time (s). During a fade the last of such commands waits.
+    /// Fades to another clip within a time (s). Of several such commands given during a fade, only the last
+    /// is carried out, after the fade.
     Change {
         /// Number of the clip.
         clip: usize,
@@ -66,7 +67,7 @@ pub enum PlayError {
 #[serde(deny_unknown_fields)]
 struct Shown {
     clip: usize,
-    /// Number of rounds so far, or, if the clip is no loop, the share of it.
+    /// Number of rounds played so far; for a clip that is no loop, the share of the clip.
     phase: f64,
 }
 
@@ -75,7 +76,7 @@ struct Shown {
 #[serde(deny_unknown_fields)]
 struct Fade {
     to: Shown,
-    /// Duration of the fade, and time passed of it (s).
+    /// Duration of the fade, and time that has passed of it (s).
     length: f64,
     gone: f64,
 }
@@ -88,7 +89,7 @@ pub struct Playback {
     fade: Option<Fade>,
     /// Clip and fade that wait for the end of the present fade.
     waiting: Option<(usize, f64)>,
-    /// Rate asked for, whether the clock runs, and its present rate.
+    /// Requested rate, whether the clock runs, and its present rate.
     asked: f64,
     goes: bool,
     rate: f64,
@@ -125,7 +126,7 @@ impl Playback {
         self.travelled
     }
 
-    /// Time of the clip that still passes if the clock is stopped now (s).
+    /// Clip time that still passes until rest if the clock is stopped now (s).
     pub fn coming_to_rest(&self) -> f64 {
         0.5 * CLOCK_START * self.rate * self.rate
     }
@@ -188,11 +189,11 @@ impl Player {
         }
     }
 
-    /// Carries out a command, from the next step on.
+    /// Accepts a command, which takes effect from the next step on.
     ///
     /// # Errors
-    /// [`PlayError`] for a clip that does not exist, or a rate or a fade out of range; nothing is changed
-    /// then.
+    /// [`PlayError`] for a clip that does not exist, or a rate or a fade out of range; the player then stays
+    /// unchanged.
     pub fn tell(&mut self, command: PlayCommand) -> Result<(), PlayError> {
         match command {
             PlayCommand::Start => self.playback.goes = true,
@@ -223,8 +224,8 @@ impl Player {
         });
     }
 
-    /// Advances by a time (s) in which no joint turns faster than [`FASTEST_TURN`]: where one would, the
-    /// clocks of clip and fade are slowed down.
+    /// Advances by a time (s). No joint turns faster than [`FASTEST_TURN`]: where one would, the clocks of
+    /// clip and fade are slowed down.
     pub fn advance(&mut self, time: f64) {
         let from = self.pose();
         let most = FASTEST_TURN * time;
@@ -255,7 +256,7 @@ impl Player {
         }
     }
 
-    /// State after a time (s) in which the clocks of clip and fade advance by a share of it.
+    /// State after a time (s) in which the clocks of clip and fade advance only by `share` of that time.
     fn later(&self, time: f64, share: f64) -> Playback {
         let mut next = self.playback.clone();
         let aim = if next.goes { next.asked } else { 0.0 };

@@ -87,7 +87,7 @@ fn blended(shares: &[(Joint, f64)], duals: &[Dual; Joint::COUNT], p: Vec3) -> Ve
     let (mut real, mut dual) = (zero, zero);
     for &(joint, share) in shares {
         let d = duals[joint as usize];
-        // Of the two quaternions of a turn, the one on the same side.
+        // Of the two quaternions of a turn, the one in the hemisphere of `base`.
         let share = if d.real.dot(&base) < 0.0 {
             -share
         } else {

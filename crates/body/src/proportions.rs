@@ -8,11 +8,11 @@ use crate::{BodyError, Description, Mannequin, Part, Primitive};
 use serde::{Deserialize, Serialize};
 use toile_geometry::Vec3;
 
-/// Proportions of a figure. Those left out stay as the body has them.
+/// Proportions of a figure. Proportions that are left out stay as the body has them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProportionBox {
-    /// Name to choose it by.
+    /// Name by which a user chooses the box.
     pub name: String,
     /// Sex of the figure; both if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -48,7 +48,7 @@ pub enum Sex {
 
 /// Range of head counts that a body may be given: wider than those of any source (1).
 const HEADS: [f64; 2] = [3.0, 10.0];
-/// Range of the crotch's height over stature (1).
+/// Range of the crotch's height as a share of stature (1).
 const CROTCH: [f64; 2] = [0.25, 0.6];
 /// Range of breadths in head lengths (1).
 const BREADTH: [f64; 2] = [0.5, 4.0];
@@ -60,9 +60,9 @@ const MISS: f64 = 0.01;
 const ROUNDS: usize = 12;
 
 /// A map of the points of a body: heights by a piecewise linear function, breadths by two ratios, the head
-/// evenly in all directions.
+/// scaled evenly in all directions.
 struct Map {
-    /// Heights of floor, crotch, chin and crown, before and after (m).
+    /// Heights of floor, crotch, chin and crown, each before and after the map (m).
     heights: [[f64; 2]; 4],
     /// Ratio of the head (1).
     head: f64,
@@ -109,7 +109,7 @@ impl ProportionBox {
         }
     }
 
-    /// The proportions of a body, from its landmarks and the section of its hips.
+    /// The proportions that a body has, from its landmarks and the section of its hips.
     pub fn of_body(body: &Mannequin) -> Self {
         let marks = body.landmarks();
         let head = marks.crown.y - marks.chin.y;
@@ -193,9 +193,9 @@ impl ProportionBox {
         }
     }
 
-    /// Height of the frame's crotch to begin with (m).
+    /// Height of the frame's crotch at the start of the search (m).
     fn wanted_crotch(&self, has: &Self, height: f64) -> f64 {
-        // Without a requested crotch, it keeps its share of the height below the chin.
+        // Without a requested crotch height, the crotch keeps its share of the height below the chin.
         let own = |b: &Self| b.crotch.unwrap_or_default() / (b.heads - 1.0);
         let share = match self.crotch {
             Some(crotch) => crotch / self.heads,
@@ -268,7 +268,7 @@ impl Map {
         [self.heights[k], self.heights[k + 1]]
     }
 
-    /// Height after the map (m).
+    /// Height after the map, of a height before the map (m).
     fn height(&self, y: f64) -> f64 {
         let [a, _] = self.segment(y);
         a[1] + (y - a[0]) * self.steep(y)
@@ -280,15 +280,16 @@ impl Map {
         (b[1] - a[1]) / (b[0] - a[0])
     }
 
-    /// Ratio of breadths at a height (1): the hips' up to the pelvis, the shoulders' from the chest on.
+    /// Ratio of breadths at a height (1): up to the pelvis that of the hips, from the chest on that of the
+    /// shoulders.
     fn broad(&self, y: f64) -> f64 {
         let [low, high] = [self.frame.joints.pelvis[1], self.frame.joints.chest[1]];
         let share = smooth_step((y - low) / (high - low));
         self.across[0] + (self.across[1] - self.across[0]) * share
     }
 
-    /// Ratio of breadth and depth of neck and head at a height (1): the trunk's up to half the neck, the
-    /// head's from the chin on.
+    /// Ratio of breadth and depth of neck and head at a height (1): up to half the neck that of the trunk,
+    /// from the chin on that of the head.
     fn round(&self, y: f64) -> f64 {
         let chin = self.heights[2][0];
         let half = 0.5 * (self.frame.joints.neck[1] + chin);

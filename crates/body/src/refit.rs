@@ -8,8 +8,8 @@ use toile_geometry::{TriangleMesh, Vec3};
 /// Number of sweeps over all points: about five halve the error.
 const SWEEPS: usize = 12;
 
-/// Scales the primitives of the left side and the middle so that the density at the skin's vertices is the
-/// threshold, and returns them with their mirror images. The scales solve the linearised least squares by
+/// Scales the primitives of the left side and the median plane so that the density at the skin's vertices is
+/// the threshold, and returns them with their mirror images. The scales solve the linearised least squares by
 /// simultaneous reconstruction (Gilbert 1972): `x += C A^T R (b - A x)`. A holds `4 q (1 - q)`, the
 /// derivative of a density by the logarithm of its primitive's size, R and C hold the inverse sums of its
 /// rows and columns.
@@ -46,7 +46,8 @@ pub(crate) fn refitted(
 /// Number of a primitive, weight, centre, centre of its mirror image, and `S^-1 R^T`.
 type Own = (usize, f64, [Vec3; 2], Matrix3<f64>);
 
-/// Centres of a primitive and of its mirror image in the same part; infinite if there is none.
+/// Centres of a primitive and of its mirror image in the same part; infinitely far away if it has no such
+/// image.
 fn sides(primitive: &Primitive) -> [Vec3; 2] {
     let centre = Vec3::from(primitive.centre);
     let twin = match primitive.part {
@@ -96,7 +97,7 @@ fn sweep(point: Vec3, own: &[Own], (step, weight): (&mut [f64], &mut [f64])) {
     }
 }
 
-/// The skin's vertices on the left and in the middle, by part.
+/// The skin's vertices on the left and in the median plane, by part.
 fn left_points(mesh: &TriangleMesh, parts: &[Part]) -> Vec<(Part, Vec<Vec3>)> {
     let mut seen = vec![false; mesh.positions.len()];
     let mut all: Vec<(Part, Vec<Vec3>)> = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg]

@@ -21,12 +21,12 @@ use toile_measure::{Measurements, Origin, UnitKind, definition};
 pub(crate) struct Request {
     /// Requested and predicted measurements.
     pub(crate) table: Measurements,
-    /// Contradictions among them.
+    /// Contradictions among the requested measurements.
     pub(crate) conflicts: Vec<Conflict>,
 }
 
-/// Limits of a length over stature and of an angle (rad): wider than any body, so that only errors of unit or
-/// typing are refused.
+/// Limits of a length as a share of stature and of an angle (rad): wider than any body, so that only errors
+/// of unit or typing are refused.
 const LENGTH: [f64; 2] = [0.004, 2.2];
 const ANGLE: [f64; 2] = [-0.2, 1.3];
 /// Limits of the angle of the arms below the horizontal (rad): from 0, arms straight out to the sides, which
@@ -35,7 +35,7 @@ const ARM_POSE: [f64; 2] = [0.0, 1.4];
 /// Limits of the stature (m): from dolls to giants.
 const STATURE: [f64; 2] = [0.12, 6.0];
 
-/// Narrower limits over stature of the most important measurements.
+/// Narrower limits as a share of stature of the most important measurements.
 const CLOSER: [(&str, [f64; 2]); 17] = [
     ("head_l", [0.09, 0.35]),
     ("neck_w", [0.05, 0.20]),
@@ -57,8 +57,8 @@ const CLOSER: [(&str, [f64; 2]); 17] = [
 ];
 
 impl Request {
-    /// Whether levels and lengths over the bust are requested, so that the length along the skin below it
-    /// determines how far the bust stands out.
+    /// Whether levels and lengths over the bust are all requested; then the length along the skin below the
+    /// bust determines how far the bust stands out.
     pub(crate) fn follows_skin(&self) -> bool {
         let all = [
             "bust_to_underbust",
@@ -132,7 +132,7 @@ impl Request {
             .is_some_and(|m| m.origin == Origin::Asked)
     }
 
-    /// Requested or predicted girth (m); `None` where the template's own is kept.
+    /// Requested or predicted girth (m); `None` if the template's own girth is kept.
     pub(crate) fn girth(&self, girth: Girth) -> Option<f64> {
         self.table.get(girth.name())
     }

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Particular {
     /// Number of the primitive, in the order of [`crate::Description::primitives`].
     pub primitive: usize,
-    /// The joint it is fixed to; `None` for the joint of the bone that it lies round.
+    /// The joint that the primitive is fixed to; `None` for the joint of the bone that the primitive lies
+    /// round.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<Joint>,
     /// Change with a reference joint; `None` for a rigid primitive.
@@ -26,7 +27,8 @@ pub struct Rigging {
     /// Properties by rising number of the primitive; primitives with default properties are left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub particulars: Vec<Particular>,
-    /// Sets of primitives that are moved and turned together: numbers rise, and none occurs twice.
+    /// Sets of primitives that are moved and turned together: numbers in ascending order, each primitive in
+    /// one set at most.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub joined: Vec<Vec<usize>>,
 }
@@ -77,7 +79,7 @@ impl Rigging {
         }
     }
 
-    /// Joins primitives, together with those that they were joined with before.
+    /// Joins primitives, together with the primitives that they were joined with before.
     pub(crate) fn join(&mut self, primitives: &[usize]) {
         let (mut one, others): (Vec<Vec<usize>>, Vec<Vec<usize>>) =
             std::mem::take(&mut self.joined)
@@ -100,7 +102,7 @@ impl Rigging {
         self.joined.retain(|set| set.len() > 1);
     }
 
-    /// A primitive with all that it is joined with.
+    /// The primitive and all primitives that it is joined with.
     pub(crate) fn together(&self, primitive: usize) -> Vec<usize> {
         let set = self.joined.iter().find(|set| set.contains(&primitive));
         set.cloned().unwrap_or_else(|| vec![primitive])

@@ -13,10 +13,10 @@ use crate::underarm::Underarm;
 use crate::{BodyError, Field, Part};
 use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
-/// Number of steps of a half ring of the trunk, from the front middle round the left to the back middle. It
+/// Number of steps of a half ring of the trunk, from the front midline round the left to the back midline. It
 /// is even, so that one column runs down the side.
 const HALF: usize = 24;
-/// Points of the crotch line between front and back middle.
+/// Number of points of the crotch line between front and back midline.
 pub(crate) const CROTCH_POINTS: usize = 7;
 /// Distance between rings of arms and legs (m).
 pub(crate) const SPACING: f64 = 0.0165;
@@ -28,9 +28,10 @@ pub(crate) const FAN: f64 = 0.0145;
 
 /// Distance between rows across the face, for a stature of 1.7 m (m).
 const FACE: f64 = 0.0055;
-/// Depth below the crown up to which these rows reach, for a stature of 1.7 m (m).
+/// Depth below the crown up to which the rows across the face reach, for a stature of 1.7 m (m).
 const ABOVE_BROW: f64 = 0.08;
-/// Largest angle by which rays gather at nose and ears (rad), and number of rows over which it grows to this.
+/// Largest angle by which rays gather at nose and ears (rad), and number of rows over which the angle grows
+/// to its largest value.
 const GATHERING: f64 = 0.09;
 const GATHERED: usize = 4;
 /// Number that marks an open vertex of a grid, inside the hole for a limb.
@@ -45,7 +46,7 @@ pub(crate) struct TemplateSkin {
     pub(crate) arm: Vec<f64>,
     /// Share with which each vertex follows the leg, 0 to 1.
     pub(crate) leg: Vec<f64>,
-    /// The mirror image of each vertex; a vertex in the middle is its own.
+    /// The mirror image of each vertex; a vertex in the median plane is its own mirror image.
     pub(crate) mirror: Vec<u32>,
     /// Vertices of the left armpit, where the trunk ends and the arm begins, from front to back.
     pub(crate) armpit: Vec<u32>,
@@ -70,7 +71,7 @@ struct Row {
 }
 
 impl Row {
-    /// Number of steps from the front middle to the back middle.
+    /// Number of steps from the front midline to the back midline.
     fn columns(&self) -> usize {
         match self.gathering {
             Some(_) => 2 * HALF,
@@ -108,7 +109,7 @@ impl Hole {
     }
 }
 
-/// The left half under construction.
+/// The left half of a skin while it is cast.
 pub(crate) struct Half<'a> {
     pub(crate) template: &'a Template,
     pub(crate) field: &'a Field,
@@ -158,8 +159,8 @@ pub(crate) fn cast_framed(template: &mut Template) -> Result<TemplateSkin, BodyE
     }
 }
 
-/// The same skin if it does not cross itself. Otherwise the first rings under the arms are evened out, as on
-/// bodies grown to measurements, if that leaves fewer crossings.
+/// The given skin if it does not cross itself. Otherwise the first rings under the arms are evened out, as on
+/// bodies grown to measurements; that skin is taken if it has fewer crossings.
 fn clear_under_the_arms(mut skin: TemplateSkin, stature: f64) -> TemplateSkin {
     let before = crossings(&skin.mesh);
     if before == 0 {
@@ -304,7 +305,7 @@ impl Half<'_> {
         let above = Vec3::new(0.0, straight, focus.z + (neck_top.z - focus.z) * 0.45);
         let face = along(&[above, neck_top, centre], spacing * scale);
         for (k, &p) in face.iter().enumerate() {
-            // No gathering next to the rows with half the columns.
+            // No gathering next to the rows that have half as many columns.
             let share = k.min(face.len() - 1 - k) as f64 / GATHERED as f64;
             rows.push(Row {
                 gathering: t.features.map(|_| GATHERING * share.min(1.0)),
@@ -431,11 +432,11 @@ impl Half<'_> {
         Ok(grid)
     }
 
-    /// Replaces tilted rays of the neck that ran on into a large chin by level ones from the axis of the
-    /// neck, evenly spaced between the rows below and the first level row.
+    /// Replaces the points of tilted neck rays that ran on into a large chin. The new rays are level and
+    /// start from the axis of the neck, evenly spaced between the rows below and the first level row.
     fn below_the_chin(&mut self, rows: &[Row], grid: &[Vec<u32>]) -> Result<(), BodyError> {
-        /// Largest height of a ray's end above the first level row, over stature: less than half the distance
-        /// to the next row.
+        /// Largest height of the end of a tilted ray above the first level row, as a share of stature: less
+        /// than half the distance to the next row.
         const OVER: [f64; 2] = [0.006, 0.0016];
         let is_head = |t: &usize| rows[*t].part == Part::Head;
         let Some(neck) = (1..rows.len()).find(is_head) else {
@@ -498,8 +499,8 @@ impl Half<'_> {
                 part => part,
             });
         }
-        // The soles stay flat, the middle stays in the plane x = 0, and the right half stays the mirror image
-        // of the left.
+        // The soles stay flat, vertices of the median plane stay in the plane x = 0, and the right half stays
+        // the mirror image of the left.
         let is_held = |v: usize| held[v.min(mirror[v] as usize)];
         crate::fair::fair(&mut mesh, |v, p| p.y <= 0.0 || is_held(v));
         for (v, &image) in mirror.iter().enumerate() {

@@ -17,15 +17,15 @@ pub(crate) struct Scales {
     pub(crate) arm: ArmScales,
 }
 
-/// Sections of the trunk at equal girth.
+/// Form of the trunk's sections at a given girth.
 #[derive(Clone, Debug)]
 pub(crate) struct TrunkScales {
     /// Form of the sections of girths round the trunk.
     pub(crate) section: PerGirth<SectionForm>,
     /// Amount by which the front corners of the chest are fuller, and the back ones less full (1).
     pub(crate) chest_asymmetry: f64,
-    /// Scale at the crotch over the scale at the hips: less than 1, so that nothing below has a larger girth
-    /// than the hips.
+    /// Scale at the crotch over the scale at the hips: less than 1 if otherwise a section below the hips had
+    /// a larger girth than the hips.
     pub(crate) crotch_to_hips: f64,
 }
 
@@ -36,22 +36,22 @@ pub(crate) struct SectionForm {
     pub(crate) aspect: f64,
     /// Amount by which the corners are fuller (1).
     pub(crate) corner_fullness: f64,
-    /// The front's share of the frontal scale, minus one half.
+    /// Share of the frontal scale that the front has, minus one half.
     pub(crate) front_share: f64,
-    /// Depth of the sides, which part the front of the girth from the back (m).
+    /// Depth of the side lines, which divide the girth into front and back (m).
     pub(crate) side_depth: f64,
 }
 
-/// The neck.
+/// Scales of the neck.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NeckScales {
     /// Lateral scale at the sides of the neck.
     pub(crate) breadth: f64,
-    /// Distance by which the neck stands forward of the template's (m).
+    /// Distance by which the neck stands forward of the neck of the template (m).
     pub(crate) forward: f64,
 }
 
-/// The shoulders.
+/// Scales of the shoulders.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShoulderScales {
     /// Lateral scale at the outer ends of the shoulders.
@@ -60,7 +60,7 @@ pub(crate) struct ShoulderScales {
     pub(crate) armpit_rise: f64,
 }
 
-/// Distances along the arm from the shoulder joint (m).
+/// Lengths of the arm: distances from the shoulder joint along the arm (m).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ArmScales {
     pub(crate) elbow: f64,
@@ -68,7 +68,7 @@ pub(crate) struct ArmScales {
 }
 
 impl Scales {
-    /// The template's own scales, at a ratio of statures.
+    /// The template's own scales, for a body with a ratio of statures.
     pub(crate) fn new(stature_ratio: f64, marks: &TemplateMarks) -> Self {
         let section = SectionForm {
             aspect: 1.0,
@@ -100,7 +100,7 @@ impl Scales {
         }
     }
 
-    /// Unknowns that converge together, slowly where they influence one another.
+    /// Unknowns that influence one another and so converge slowly; they are extrapolated together.
     pub(crate) fn coupled(&mut self) -> impl Iterator<Item = &mut f64> {
         let single = [
             &mut self.shoulder.breadth,

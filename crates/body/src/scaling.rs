@@ -6,7 +6,7 @@ use crate::{BodyError, Description, Part, Primitive};
 use toile_geometry::Vec3;
 
 /// Ratios applied to a body, in this order. Principal directions of the ellipsoids keep their orientation;
-/// the length along each is scaled with the ratio of the global direction that it is nearest to, its tag.
+/// the length along each is scaled with the ratio of its tag, the global direction that it is nearest to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
     /// Global: all three directions (1).
@@ -15,8 +15,8 @@ pub struct Scaling {
     pub frontal: f64,
     /// High lateral: breadth of arms and head, and of the trunk above the spine's origin (1).
     pub high_lateral: f64,
-    /// Spine origin: ratio of its heights at the same stature; trunk and legs are stretched against each
-    /// other (1).
+    /// Spine origin: ratio of its heights at the same stature (1); if trunk or legs are lengthened, the other
+    /// is shortened.
     pub spine_origin: f64,
     /// Low lateral: breadth of legs, and of the trunk below the spine's origin (1).
     pub low_lateral: f64,
@@ -44,7 +44,7 @@ enum Step {
     LowLateral(f64),
 }
 
-/// Limits of every ratio: wider than between any two bodies.
+/// Limits of every ratio: wider than the ratio between any two bodies.
 const LIMITS: [f64; 2] = [0.1, 10.0];
 
 impl Scaling {
@@ -133,7 +133,8 @@ impl Step {
         }
     }
 
-    /// Ratios of the three directions, for parts above or below the spine's origin.
+    /// Ratios of the three directions (lateral, height, frontal), for parts above or below the spine's
+    /// origin.
     fn ratios(self, is_high: bool, origin: f64, height: f64) -> Vec3 {
         match self {
             Self::Global(r) => Vec3::repeat(r),
@@ -148,7 +149,7 @@ impl Step {
         }
     }
 
-    /// A point after the step: heights above the spine's origin are measured from the crown down.
+    /// A point after the step; the height of a point above the spine's origin is scaled from the crown down.
     fn place(self, p: [f64; 3], is_high: bool, [origin, height]: [f64; 2]) -> [f64; 3] {
         let ratio = self.ratios(is_high, origin, height);
         let y = match self {
@@ -209,8 +210,8 @@ impl Step {
     }
 }
 
-/// Tag of each principal direction: the global axis it has its largest component along, 0 lateral, 1 height,
-/// 2 frontal.
+/// Tag of each principal direction: the global axis along which it has its largest component, 0 lateral, 1
+/// height, 2 frontal.
 pub fn tags(primitive: &Primitive) -> [usize; 3] {
     let turn = *primitive.rotation().matrix();
     std::array::from_fn(|k| turn.column(k).iamax())

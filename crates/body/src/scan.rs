@@ -44,8 +44,8 @@ impl Loop {
     }
 }
 
-/// Landmarks of a mesh: heights above its lowest point, and points (m). Those left out are searched for, or
-/// not measured if they cannot be found.
+/// Landmarks of a mesh: heights above its lowest point, and points (m). Landmarks that are left out are
+/// searched for; if they cannot be found, the measurements that need them are left out.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScanLandmarks {
@@ -65,7 +65,7 @@ pub struct ScanLandmarks {
     pub knee: Option<f64>,
     /// Base of the neck at the back (m).
     pub nape: Option<[f64; 3]>,
-    /// Left end of the shoulders, +X (m).
+    /// Outer end of the left shoulder, +X (m).
     pub shoulder_tip: Option<[f64; 3]>,
     /// Left side of the neck, +X (m).
     pub neck_side: Option<[f64; 3]>,
@@ -82,24 +82,25 @@ pub struct Scan {
     landmarks: ScanLandmarks,
 }
 
-/// Steps of the search for crotch and armpits, over stature, and halvings of the step that they lie in.
+/// Steps of the search for crotch and armpits, as a share of stature, and halvings of the step that they lie
+/// in.
 const CROTCH_STEP: f64 = 0.001;
 const ARMPIT_STEP: f64 = 0.002;
 const HALVINGS: usize = 8;
-/// Sudden increase in the trunk's breadth where arms join it, over stature.
+/// Sudden increase in the trunk's breadth where arms join it, as a share of stature.
 const ARM_BREADTH: f64 = 0.05;
-/// Levels of an upright person over stature, used as start of a search or where none is found: crotch, waist
-/// and armpits.
+/// Levels of an upright person, as shares of stature, used as the start of a search or if the search fails:
+/// crotch, waist and armpits.
 const CROTCH: f64 = 0.46;
 const WAIST: f64 = 0.6;
 const ARMPIT: f64 = 0.74;
-/// Highest armpit, over stature.
+/// Highest armpit, as a share of stature.
 const ARMPIT_MOST: f64 = 0.85;
-/// Length of a loop over stature below which it is a finger or a toe.
+/// Length of a loop as a share of stature below which it is a finger or a toe.
 const LIMB: f64 = 0.03;
 
 impl Scan {
-    /// Takes a mesh in metres, Y up, with landmarks, and searches for those that are left out.
+    /// Takes a mesh in metres, Y up, with landmarks, and searches for the landmarks that are left out.
     ///
     /// # Errors
     /// [`BodyError::Mesh`] for a mesh that is not closed and outward, or smaller than a doll or larger than a
@@ -150,12 +151,12 @@ impl Scan {
         Ok(scan)
     }
 
-    /// Shift that makes the mesh stand on y = 0 with its middle at x = 0 (m).
+    /// Shift that makes the mesh stand on y = 0 centred at x = 0 (m).
     pub(crate) fn shift(&self) -> Vec3 {
         -Vec3::new(self.middle, self.floor, 0.0)
     }
 
-    /// The mesh shifted (m), with its landmarks.
+    /// The scan with its mesh and landmarks shifted (m).
     pub(crate) fn moved(&self, shift: Vec3) -> Result<Self, BodyError> {
         let mut mesh = self.mesh.clone();
         for p in &mut mesh.positions {
@@ -237,7 +238,8 @@ impl Scan {
         loops
     }
 
-    /// The trunk's loop at a height: the one on both sides of the middle; the longest if there are several.
+    /// The trunk's loop at a height: the loop that crosses the median plane; the longest if there are
+    /// several.
     pub fn trunk(&self, height: f64) -> Option<Loop> {
         self.trunk_of(&self.level(height)).cloned()
     }
@@ -321,8 +323,8 @@ impl Scan {
         }
     }
 
-    /// The crotch: from the waist down, the last level at which one loop as long as a trunk's holds the
-    /// middle.
+    /// The crotch: from the waist down, the last level at which one loop as long as a trunk's crosses the
+    /// median plane.
     fn lowest_trunk(&self) -> Option<f64> {
         let h = self.height;
         let is_trunk = |y: f64| self.trunk(y).is_some_and(|l| l.length() > 0.2 * h);
@@ -356,8 +358,8 @@ impl Scan {
     }
 }
 
-/// Position between two others at which a condition begins to hold: it is false at the first and true at the
-/// second.
+/// Position between two given positions at which a condition begins to hold: it is false at the first and
+/// true at the second.
 fn between([mut without, mut with]: [f64; 2], holds: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..HALVINGS {
         let middle = 0.5 * (without + with);

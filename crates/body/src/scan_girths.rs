@@ -8,12 +8,12 @@ use toile_geometry::Vec3;
 use toile_measure::{Measurements, Origin};
 
 /// Range of the narrowest level of the neck: least height above the armpits and least depth below the crown,
-/// over stature.
+/// as a share of stature.
 const NECK: [f64; 2] = [0.03, 0.07];
 const NECK_STEP: f64 = 0.0025;
-/// Length of a loop over stature below which it is a finger or an ear.
+/// Length of a loop as a share of stature below which it is a finger or an ear.
 const LIMB: f64 = 0.04;
-/// Length of a loop of the neck over stature below which it belongs to the mouth.
+/// Length of a loop of the neck as a share of stature below which it belongs to the mouth.
 const MIN_NECK: f64 = 0.12;
 
 /// Middle line of the left arm from the shoulder to the finger tips (m).
@@ -46,13 +46,14 @@ impl ArmPath {
         let next = self.along.partition_point(|d| *d < distance).clamp(1, last);
         let [a, b] = [next - 1, next].map(|k| self.middles[k]);
         let share = (distance - self.along[next - 1]) / (self.along[next] - self.along[next - 1]);
-        // Over several sections: the middle of a single one wavers.
+        // Averaged over several sections: the centre of a single section wavers.
         let [from, to] = [next.saturating_sub(4), (next + 3).min(last)];
         let way = self.middles[to] - self.middles[from];
         [a + (b - a) * share, way.normalize()]
     }
 
-    /// Distance along the arm of a point near its beginning, also on the straight line before it.
+    /// Distance along the arm of a point near its beginning, also of a point on the straight line before the
+    /// beginning.
     fn along(&self, p: Vec3) -> f64 {
         let [start, way] = self.at(0.0);
         (p - start).dot(&way)
@@ -131,7 +132,7 @@ impl Scan {
         found.collect()
     }
 
-    /// Fold between the left arm and the trunk (m).
+    /// The point in the fold between the left arm and the trunk (m).
     fn fold(&self, body: &BodyMarks) -> Vec3 {
         let beside = self.trunk(body.armpit - 0.002 * body.stature);
         let side = beside.map_or(0.1 * body.stature, |l| {
@@ -140,7 +141,7 @@ impl Scan {
         Vec3::new(self.middle + side, self.floor + body.armpit, 0.0)
     }
 
-    /// Middle of the narrowest level section between shoulders and head (m).
+    /// Centre of the narrowest level section between shoulders and head (m).
     fn neck_middle(&self, body: &BodyMarks) -> Option<Vec3> {
         let h = body.stature;
         let [low, high] = [body.armpit + NECK[0] * h, (1.0 - NECK[1]) * h];
@@ -153,21 +154,21 @@ impl Scan {
         Some(Vec3::new(self.middle, self.floor + y, middle.y))
     }
 
-    /// Girth of a neck through a point in its middle (m).
+    /// Girth of a neck through a point at its centre (m).
     fn around_neck(&self, middle: Vec3) -> Option<f64> {
         let (sin, cos) = NECK_TILT.sin_cos();
         let loops = self.section(middle, [Vec3::x(), Vec3::new(0.0, -sin, cos)]);
         self.round_the_middle(loops, MIN_NECK)
     }
 
-    /// Girth across the arm through a point in its middle (m).
+    /// Girth across the arm through a point at its centre (m).
     fn across_arm(&self, [middle, along]: [Vec3; 2]) -> Option<f64> {
         let first = along.cross(&Vec3::z()).try_normalize(1e-9)?;
         self.round_the_middle(self.section(middle, [first, first.cross(&along)]), LIMB)
     }
 
-    /// Girth of the loop with its middle nearest to a section's origin, among loops of at least a length over
-    /// stature (m).
+    /// Girth of the loop whose centre is nearest to the section's origin, among loops at least `least` times
+    /// as long as the stature (m).
     fn round_the_middle(&self, loops: Vec<Loop>, least: f64) -> Option<f64> {
         let far = |l: &Loop| l.centre().norm();
         let nearest = loops

@@ -13,7 +13,7 @@ pub(crate) type Curve = Vec<[f64; 2]>;
 pub(crate) struct Shape {
     /// Ratio of statures, body to template.
     pub(crate) stature_ratio: f64,
-    /// Heights on the body over those on the template, from the floor up (m).
+    /// Heights on the template with the heights on the body that correspond to them, from the floor up (m).
     pub(crate) heights: Curve,
     pub(crate) trunk: TrunkShape,
     pub(crate) shoulder: ShoulderShape,
@@ -30,17 +30,17 @@ pub(crate) struct TrunkShape {
     pub(crate) lateral: Curve,
     /// Frontal scale before the plane z = 0 (1).
     pub(crate) front: Curve,
-    /// Frontal scale behind this plane (1).
+    /// Frontal scale behind the plane z = 0 (1).
     pub(crate) back: Curve,
     /// Amount by which the corners of a section lie farther out at equal breadth and depth (1).
     pub(crate) corner_fullness: Curve,
-    /// Amount by which front corners are fuller than that, and back corners less full (1).
+    /// Amount by which front corners are fuller than `corner_fullness`, and back corners less full (1).
     pub(crate) corner_asymmetry: Curve,
     /// Depth on the template about which sections are scaled (m).
     pub(crate) middle_on_template: Curve,
     /// Depth on the body about which sections are scaled (m).
     pub(crate) middle_on_body: Curve,
-    /// Depth of the sides, which part the front of a girth from the back (m).
+    /// Depth of the side lines, which divide a girth into front and back (m).
     pub(crate) side_depth: PerGirth<f64>,
 }
 
@@ -72,25 +72,25 @@ pub(crate) struct CrotchForm {
     pub(crate) point_offset: f64,
 }
 
-/// The arm: curves over the distance from the shoulder joint on the template.
+/// Shape of the arm: curves over the distance from the shoulder joint on the template.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ArmShape {
     /// Scale about the axis (1).
     pub(crate) scale: Curve,
-    /// Distance from the shoulder joint on the body (m).
+    /// Distance from the shoulder joint on the body, by the distance on the template (m).
     pub(crate) length: Curve,
     /// Angle of the arm below the horizontal (rad).
     pub(crate) angle: f64,
 }
 
-/// The leg.
+/// Shape of the leg.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LegShape {
-    /// Scale about the axis over template height (1).
+    /// Scale about the axis (1), by template height.
     pub(crate) scale: Curve,
     /// Sideways scale of the position of the axis (1).
     pub(crate) stance: f64,
-    /// Factor by which the top is broader and less deep (1).
+    /// Factor by which the top of the leg is broader and less deep (1).
     pub(crate) top_breadth: f64,
 }
 

@@ -10,13 +10,14 @@ use crate::shape::{ArmShape, Curve, LegShape, Shape, ShoulderShape, TrunkShape, 
 use crate::solve_input::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 
-/// Least sideways scale of the legs' stance, over the scale of the thighs: thicker thighs would meet.
+/// Smallest sideways scale of the legs' stance, over the scale of the thighs: with less, thick thighs would
+/// meet.
 const ASTRIDE: f64 = 0.75;
 
 /// Scales at one level of the trunk: height on the template (m), lateral, front, back.
 type Section = [f64; 4];
 
-/// Least distance between sections with scales of their own, over stature.
+/// Least distance between sections with scales of their own, as a share of stature.
 const APART: f64 = 0.006;
 
 /// The shape that belongs to given scales and levels.
@@ -123,7 +124,8 @@ fn middles(input: &SolveInput, s: &Scales) -> [Curve; 2] {
     ]
 }
 
-/// Sections of trunk, neck and head from below. Of two that lie too close, the more important one is kept.
+/// Sections of trunk, neck and head from below. If two sections lie too close, only the more important one is
+/// kept.
 fn trunk(
     input: &SolveInput,
     s: &Scales,
@@ -156,7 +158,7 @@ fn trunk(
         Girth::HighHips,
     ] {
         if let (Some(_), Some(level)) = (input.request.girth(girth), girth.level()) {
-            // Hips keep their girth whatever level the lengths give them.
+            // Hips keep their girth at whatever level the lengths place them.
             let range = match girth {
                 Girth::Hips => trunk_range(girth, ends),
                 _ => None,
@@ -186,7 +188,7 @@ fn trunk(
     rows
 }
 
-/// Fullness of the corners of the sections over template height: none at the shoulders.
+/// Fullness of the corners of the sections over template height: 0 at the shoulders.
 fn corner_fullness(
     input: &SolveInput,
     s: &Scales,
@@ -212,8 +214,8 @@ fn corner_fullness(
     rows
 }
 
-/// Amount by which the front corners of the sections are fuller than the back ones, over template height:
-/// none at the waist and at the shoulders.
+/// Amount by which the front corners of the sections are fuller than the back ones, over template height: 0
+/// at the waist and at the shoulders.
 fn corner_asymmetry(
     s: &Scales,
     m: &TemplateMarks,
@@ -300,7 +302,7 @@ fn arm(input: &SolveInput, s: &Scales) -> Curve {
     rows
 }
 
-/// Distance from the shoulder joint on the body over that on the template (m).
+/// Distance from the shoulder joint on the template with the distance on the body that corresponds to it (m).
 fn arm_length(input: &SolveInput, s: &Scales) -> Curve {
     let (on_template, on_body) = (&input.marks.arm, &s.arm);
     let wrist = on_body.wrist;

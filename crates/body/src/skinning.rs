@@ -13,8 +13,8 @@ pub(crate) struct Skinning {
     shares: Vec<Shares>,
 }
 
-/// Half the length over which skin passes from one bone to the next, over stature: at elbows, wrists and
-/// ankles, at knees, and in the trunk.
+/// Half the length over which skin passes from one bone to the next, as a share of stature: at elbows, wrists
+/// and ankles, at knees, and in the trunk.
 const SMALL: f64 = 0.026;
 const KNEE: f64 = 0.035;
 const SPINE: f64 = 0.04;
@@ -131,7 +131,7 @@ impl Skinning {
     }
 }
 
-/// Weights of a vertex in the middle: the weight of a left limb is divided between both sides.
+/// Weights of a vertex in the median plane: the weight of a left limb is divided between both sides.
 fn on_both_sides(shares: &[(Joint, f64)]) -> Shares {
     let half = |&(joint, share): &(Joint, f64)| match joint.mirrored() == joint {
         true => vec![(joint, share)],

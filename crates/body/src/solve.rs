@@ -23,7 +23,7 @@ use crate::tape::{Skinned, extent, half_length};
 use crate::warp::{Follow, Warp};
 use toile_geometry::{TriangleMesh, Vec3, closed_length};
 
-/// The solution.
+/// The solved shape, levels and skin of a body.
 pub(crate) struct Solved {
     pub(crate) shape: Shape,
     pub(crate) levels: Levels,
@@ -32,22 +32,22 @@ pub(crate) struct Solved {
 
 /// Number of rounds between two extrapolations of the unknowns to their limit.
 const EXTRAPOLATION_INTERVAL: usize = 8;
-/// Number of rounds in which posture and form are still corrected: if the form of a bust is solved for, which
-/// influences all other unknowns, and if not. Most bodies need 8 to 15.
+/// Number of rounds in which posture and form are still corrected: if the form of a bust, which influences
+/// all other unknowns, is solved for; and if it is not. Most bodies need 8 to 15.
 const FORMING: [usize; 2] = [32, 24];
-/// Number of rounds after these, in which only girths and levels are corrected, and number of first rounds in
-/// which the form of sections is corrected.
+/// Number of rounds after [`FORMING`], in which only girths and levels are corrected; and number of first
+/// rounds in which the form of sections is corrected.
 const LAST: usize = 16;
 const SHAPING: usize = 12;
 /// Number of rounds between two searches for the positions of girths.
 const LOOKS: usize = 4;
-/// Largest change of a girth or a level over stature at which the rounds end: 0.002 mm.
+/// Largest change of a girth or a level as a share of stature at which the rounds end: 0.002 mm.
 const STILL: f64 = 1e-6;
 
 impl SolveInput<'_> {
     /// Finds the shape by fixed-point iteration: each scale is multiplied by the ratio of requested to
-    /// measured girth, each level moved by the error of its landmark. Until the last round is over, only the
-    /// rings that the tape meets are placed.
+    /// measured girth, each level is moved by the error of its landmark. Until the last round is over,
+    /// only the vertices that the tape meets are computed.
     pub(crate) fn solve(&self) -> Result<Solved, BodyError> {
         let height = self.request.get("height");
         let mut scales = Scales::new(self.stature_ratio(), &self.marks);
@@ -134,7 +134,7 @@ impl SolveInput<'_> {
             }
         }
         let (tip, neck) = (taken.tip(), taken.neck_side());
-        // Shoulders are set by their width, else by the lengths over them.
+        // The shoulders' breadth is determined by their width, or else by the lengths over them.
         let over = ["shoulder_w", "shoulder_to_shoulder", "shoulder_length"];
         let name = over
             .into_iter()
@@ -227,7 +227,7 @@ impl SolveInput<'_> {
         let form = &mut scales.trunk.section[Girth::Bust];
         let aspect = form.aspect * ratio(z, q.get("chest_depth"));
         form.aspect = aspect.clamp(ASPECT[0], ASPECT[1]);
-        // Requested widths of front or back already determine it.
+        // Requested widths of front or back already determine the asymmetry of the corners.
         let is_said = ["front_width", "back_width"]
             .iter()
             .any(|name| q.is_asked(name));
@@ -288,7 +288,8 @@ impl SolveInput<'_> {
             let more = longer / (LEVELLED * height);
             let flatness = &mut scales.crotch.flatness;
             step(flatness, 0.6 * more, FLATNESS, LEVELLED * height);
-            // If a level crotch is not enough, hips without a requested form are made deeper.
+            // If a level crotch does not suffice for the crotch length, hips without a requested form are
+            // made deeper.
             let is_said = q.is_asked("hip_depth") || q.is_asked("hip_breadth");
             if *flatness == FLATNESS[1] && round >= SHAPING && !is_said {
                 let aspect = &mut scales.trunk.section[Girth::Hips].aspect;
@@ -312,7 +313,7 @@ impl SolveInput<'_> {
             step(&mut scales.neck.forward, by, limits, 1.0);
         }
         if let Some(asked) = q.girth(Girth::Hips) {
-            // Nothing below the hips may have a larger girth than the hips at their level.
+            // No section below the hips may have a larger girth than the hips at their level.
             let most = taken.girth(Girth::Hips);
             let share = match taken.at_level(Girth::Hips) {
                 Some(there) if taken.hips_lie_below() => (there / most + AS_LARGE).min(1.0),
@@ -338,7 +339,8 @@ impl SolveInput<'_> {
         miss
     }
 
-    /// Position of a vertex of the template on a body of a height (m); only for the left half and the middle.
+    /// Position of a vertex of the template on a body of a height (m); only for the left half and the median
+    /// plane.
     fn place(&self, warp: &Warp, height: f64, v: usize) -> Vec3 {
         let follow = Follow {
             arm: self.skin.arm[v],
@@ -387,7 +389,7 @@ fn extrapolate(scales: &mut Scales, [mut older, mut old]: [Scales; 2]) {
     }
 }
 
-/// Parts of girths on one side of the side lines: +1 in front, -1 behind.
+/// Parts of girths in front of the side lines (+1) or behind them (-1), by name.
 const PARTS: [(Girth, &str, f64); 5] = [
     (Girth::Bust, "front_width", 1.0),
     (Girth::Bust, "back_width", -1.0),
@@ -403,7 +405,7 @@ const CORNERS: [f64; 2] = [-0.3, 0.3];
 /// Range of the fullness of a chest's front corners relative to the mean of front and back.
 const ASYMMETRY: [f64; 2] = [-0.25, 0.25];
 
-/// Largest distance of a neck from the template's position, over stature.
+/// Largest distance of a neck from the template's position, as a share of stature.
 const NECK_FORWARD: f64 = 0.05;
 
 /// Range of a girth of the trunk at the section that sets its scale, over the girth where it is taped.
@@ -412,38 +414,39 @@ const BESIDE: [f64; 2] = [0.7, 1.5];
 /// Range of the trunk's scale at the crotch over the scale at the hips.
 const CROTCH_TO_HIPS: [f64; 2] = [0.85, 1.0];
 
-/// Share of the hips' girth by which the girth at their level may be smaller.
+/// Largest share of the hips' girth by which the girth at the hips' level may be smaller.
 const AS_LARGE: f64 = 0.002;
 
-/// Exponent by which the crotch is narrowed more than in proportion, as the correction is meant for the
-/// section above it.
+/// Exponent with which the scale at the crotch is corrected: more than 1, as the correction is meant for the
+/// section above the crotch.
 const CROTCH_GAIN: f64 = 1.7;
 
-/// Largest distance of an armpit from the template's position, over stature.
+/// Largest distance of an armpit from the template's position, as a share of stature.
 const ARMPIT: f64 = 0.035;
 
-/// Largest deviation of the front's share of the frontal scale from one half; the rest of a requested part of
-/// a girth is met by the positions of its sides.
+/// Largest deviation of the front's share of the frontal scale from one half; if a requested part of a girth
+/// needs more, the side lines are moved.
 const FRONT_SHARE: f64 = 0.05;
 
-/// Largest distance of the sides of a girth from the middle, and of the crotch point from the lowest point of
-/// the crotch, over stature.
+/// Largest distance of the side lines of a girth from the plane z = 0, and of the crotch point from the
+/// lowest point of the crotch, as a share of stature.
 const SIDES: f64 = 0.045;
 
 /// Range of the share by which the bust points may be farther apart than in the scaled sections.
 const SPREAD: [f64; 2] = [-0.4, 1.0];
 
-/// Range of the projection of the bust points, over stature.
+/// Range of the projection of the bust points, as a share of stature.
 const PROJECTION: [f64; 2] = [-0.02, 0.085];
 
-/// Range of the flatness of a crotch, and lengthening of the crotch length by a level one, over stature.
+/// Range of the flatness of a crotch, and lengthening of the crotch length by a level one, as a share of
+/// stature.
 const FLATNESS: [f64; 2] = [-0.3, 0.97];
 const LEVELLED: f64 = 0.05;
 
-/// Half the least gap between the legs, over stature: cloth must pass.
+/// Half the least gap between the legs, as a share of stature: cloth must pass.
 const LEG_GAP: f64 = 0.0018;
 
-/// Least distance from the middle of points that are not in it, over stature.
+/// Smallest distance from the median plane of points that are not in it, as a share of stature.
 const SIDE_GAP: f64 = 0.0006;
 
 fn ratio(asked: f64, got: f64) -> f64 {

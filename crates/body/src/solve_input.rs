@@ -19,7 +19,7 @@ impl SolveInput<'_> {
         self.request.get("height") / self.template.height
     }
 
-    /// Vertices of the middle among which the crotch may have its lowest point.
+    /// Vertices of the median plane among which the crotch may have its lowest point.
     pub(crate) fn crotch_vertices(&self) -> Vec<u32> {
         (0..self.skin.mirror.len() as u32)
             .filter(|&v| {

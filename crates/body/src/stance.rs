@@ -79,7 +79,7 @@ impl MeshUnit {
         }
     }
 
-    /// The unit in which a height has the size of a person; metres if they are possible, also for a doll.
+    /// The unit in which a height has the size of a person; metres if several units fit, and for a doll.
     fn of_height(height: f64) -> Result<Self, BodyError> {
         let fits = |unit: &Self| PERSON.contains(&(height * unit.metres()));
         let fitting: Vec<Self> = Self::ALL.into_iter().filter(fits).collect();
@@ -138,7 +138,7 @@ impl FromStr for MeshUnit {
 const PERSON: std::ops::RangeInclusive<f64> = 0.45..=2.5;
 const DOLL: std::ops::Range<f64> = 0.12..0.45;
 
-/// Requested values of a mesh's stance; those left out are found.
+/// Requested values of a mesh's stance; values that are left out are detected.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AskedStance {
     /// The axis that is up.
@@ -181,7 +181,7 @@ impl Stance {
         unit: MeshUnit::Metre,
     };
 
-    /// The stance of a person's mesh: as requested, else as recognized, else our own.
+    /// The stance of a person's mesh: as requested, else as recognized, else the program's own.
     ///
     /// # Errors
     /// [`BodyError::Mesh`] for a mesh that seems to lie down, whose unit is not clear, or with two axes that
@@ -206,13 +206,13 @@ impl Stance {
         .checked()
     }
 
-    /// Whether points keep their coordinates.
+    /// Whether the stance is the program's own, so that points keep their coordinates.
     pub fn is_ours(&self) -> bool {
         *self == Self::OURS
     }
 
-    /// The same axis up and unit, with the usual forward axis: for meshes that are not to be turned about the
-    /// vertical.
+    /// The stance with the same up axis and unit, and with the usual forward axis: for meshes that are not to
+    /// be turned about the vertical.
     #[must_use]
     pub fn facing_anywhere(self) -> Self {
         Self {
@@ -255,7 +255,7 @@ impl Stance {
         }
     }
 
-    /// A point of the file in our own stance: metres, Y up, facing +Z.
+    /// A point of the file in the program's own stance: metres, Y up, facing +Z.
     pub fn place(&self, point: Vec3) -> Vec3 {
         let (up, forward) = (self.up.direction(), self.forward.direction());
         let left = up.cross(&forward);
@@ -296,18 +296,19 @@ struct Standing {
     height: f64,
 }
 
-/// Levels over stature at which two legs, a trunk, a head, an ankle and the foot below it are looked for.
+/// Levels as a share of stature at which two legs, a trunk, a head, an ankle and the foot below it are looked
+/// for.
 const LEGS: [f64; 3] = [0.14, 0.22, 0.3];
 const TRUNK: f64 = 0.58;
 const HEAD: f64 = 0.94;
 const ANKLE: f64 = 0.08;
 const FOOT: f64 = 0.02;
-/// Least length of the outline of a leg and largest of a head, over stature.
+/// Smallest length of the outline of a leg and largest of the outline of a head, as shares of stature.
 const LEG_LEAST: f64 = 0.06;
 const HEAD_MOST: f64 = 0.9;
-/// Least length of the outline of the thinner leg over that of the other.
+/// Least length of the outline of the thinner leg over the length of the other leg's outline.
 const ALIKE: f64 = 0.6;
-/// Least distance of the middle of a foot in front of the ankle, over stature.
+/// Smallest distance of the centre of a foot in front of the ankle, as a share of stature.
 const FOOT_AHEAD: f64 = 0.01;
 
 impl Standing {

@@ -5,8 +5,8 @@ use crate::rings::{Half, OPEN};
 use std::cmp::Ordering;
 
 impl Half<'_> {
-    /// Adds the triangles between two half rows, of which one may have twice the columns; none at open
-    /// vertices.
+    /// Adds the triangles between two half rows, of which one may have twice as many columns. Triangles with
+    /// an open vertex are left out.
     pub(crate) fn strip(&mut self, part: Part, [lower, upper]: [&[u32]; 2]) {
         let open = |corners: &[u32]| corners.contains(&OPEN);
         match lower.len().cmp(&upper.len()) {
@@ -48,8 +48,8 @@ impl Half<'_> {
         }
     }
 
-    /// Adds a band between two rings of the same length, the second one farther out on the limb; none at open
-    /// vertices.
+    /// Adds a band between two rings of the same length, the second one farther out on the limb. Triangles
+    /// with an open vertex are left out.
     pub(crate) fn band(&mut self, part: Part, from: &[u32], to: &[u32]) {
         let n = from.len();
         for k in 0..n {

@@ -137,12 +137,12 @@ impl<'a> Skinned<'a> {
     }
 }
 
-/// Girth of one part by a tight tape in a plane (m); zero where it has no section.
+/// Girth of one part by a tight tape in a plane (m); zero if the plane does not meet the part.
 pub(crate) fn girth(skinned: &Skinned, part: Part, plane: [Vec3; 2], near: Option<Near>) -> f64 {
     closed_length(&skinned.hull(part, plane, near))
 }
 
-/// Length of the part of a closed hull with `side * y >= 0`, without the chord (m).
+/// Length of the part of a closed hull with `side * y >= 0`, without the closing chord (m).
 pub(crate) fn half_length(hull: &[Vec2], side: f64) -> f64 {
     let mut sum = 0.0;
     for (k, &a) in hull.iter().enumerate() {
@@ -191,7 +191,7 @@ pub(crate) fn fall(segments: &[[Vec3; 2]], from: Vec3, level: f64, outward: Vec3
     Some(stretched(&flat, end, Vec2::new(from.y, from.dot(&outward))))
 }
 
-/// Length of such a tape that hangs straight down from the outermost point (m).
+/// Length of a tape as in [`fall`] that hangs straight down below the outermost point (m).
 pub(crate) fn hanging(
     segments: &[[Vec3; 2]],
     from: Vec3,

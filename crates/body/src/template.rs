@@ -89,7 +89,7 @@ impl Figure {
     }
 }
 
-/// Joint centres of the left side and the middle.
+/// Joint centres of the left side and the median plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Joints {
@@ -129,7 +129,7 @@ pub struct BodyFrame {
     pub armpit: f64,
     /// Distance from the wrist to the last ring of the hand (m).
     pub hand: f64,
-    /// A distance from the middle that lies outside the neck and below the shoulder's slope (m).
+    /// A distance from the median plane that lies outside the neck and below the shoulder's slope (m).
     pub neck_radius: f64,
     /// Joint centres.
     pub joints: Joints,
@@ -146,8 +146,8 @@ pub struct Features {
     pub thumb: [[f64; 3]; 2],
 }
 
-/// A template as it is stored. Rows: centre, effective semi-axes (m), rotation vector (rad). Rows of trunk
-/// and head off the middle stand for a pair; arm and leg are the left ones.
+/// A template as it is stored. Each entry is a primitive: centre, effective semi-axes (m), rotation vector
+/// (rad). Primitives of trunk and head off the median plane stand for a pair; arm and leg are the left ones.
 pub(crate) struct Table {
     height: f64,
     crotch: f64,
@@ -177,14 +177,14 @@ pub(crate) struct Template {
     pub(crate) armpit: Option<f64>,
     /// Distance from the wrist to the last ring of the hand (m).
     pub(crate) hand: f64,
-    /// A distance from the middle that lies outside the neck and below the shoulder's slope (m): the rays of
-    /// shoulders and neck cross outside it.
+    /// A distance from the median plane that lies outside the neck and below the shoulder's slope (m): the
+    /// rays of shoulders and neck cross outside it.
     pub(crate) neck_radius: f64,
     /// Positions of fine features, if the body has face and thumbs.
     pub(crate) features: Option<Features>,
     /// Primitives of both sides.
     pub(crate) primitives: Vec<Primitive>,
-    /// Properties of the primitives of the left side and the middle that differ from the default.
+    /// Properties of the primitives of the left side and the median plane that differ from the default.
     pub(crate) rigging: Rigging,
 }
 
@@ -203,8 +203,8 @@ impl Table {
     }
 }
 
-/// Primitives of the left side and the middle of a figure's trunk, neck and skull, and of its arm down to the
-/// wrist: without face and hands.
+/// Primitives of the left side and the median plane of a figure's trunk, neck and skull, and of its arm down
+/// to the wrist: without face and hands.
 pub(crate) fn plain_primitives(figure: Figure) -> Vec<Primitive> {
     let table = Table::of(figure);
     let rows = [

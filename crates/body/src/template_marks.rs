@@ -11,7 +11,7 @@ use toile_geometry::{TriangleMesh, Vec2, Vec3, horizontal_section};
 /// Three points of a plane of a template (m).
 pub(crate) type Plane = [Vec3; 3];
 
-/// Landmarks of a template by part of the body (m): of pairs the left one.
+/// Landmarks of a template by part of the body (m); of landmarks in pairs, the left one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TemplateMarks {
     /// Height of the top of the head.
@@ -26,27 +26,27 @@ pub(crate) struct TemplateMarks {
     pub(crate) leg: LegMarks,
 }
 
-/// The neck.
+/// Landmarks of the neck.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct NeckMarks {
     /// Middle of the neck (m).
     pub(crate) middle: Vec3,
     /// Point where the neck meets the shoulder (m).
     pub(crate) side: Vec3,
-    /// The same point on the skin.
+    /// The same point as a point of the skin.
     pub(crate) side_on: OnEdge,
 }
 
-/// The shoulder.
+/// Landmarks of the shoulder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ShoulderMarks {
     /// Outer end of the shoulder (m).
     pub(crate) tip: Vec3,
-    /// The same point on the skin.
+    /// The same point as a point of the skin.
     pub(crate) tip_on: OnEdge,
 }
 
-/// The armpit.
+/// Landmarks of the armpit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ArmpitMarks {
     /// Height of the armpit (m).
@@ -55,7 +55,7 @@ pub(crate) struct ArmpitMarks {
     pub(crate) front_fold: u32,
 }
 
-/// The bust.
+/// Landmarks of the bust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BustMarks {
     /// Height of the bust (m).
@@ -64,32 +64,31 @@ pub(crate) struct BustMarks {
     pub(crate) point: Vec3,
 }
 
-/// The trunk.
+/// Measures of the trunk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct TrunkMarks {
-    /// Depth of the middle of the trunk (m).
+    /// Depth of the centre of the trunk (m).
     pub(crate) middle_depth: f64,
-    /// Sections from crotch to bust: height, half the breadth, depths in front of and behind the middle (m).
+    /// Sections from crotch to bust: height, half the breadth, depths in front of and behind the centre (m).
     pub(crate) sections: [[f64; 4]; SECTIONS],
 }
 
-/// The crotch.
+/// Landmarks of the crotch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CrotchMarks {
     /// Height of the crotch (m).
     pub(crate) height: f64,
-    /// Rise of the body's middle line above this height, at [`CROTCH_PLACES`] even depths from back to front
-    /// (m).
+    /// Rise of the body's midline above this height, at [`CROTCH_PLACES`] even depths from back to front (m).
     pub(crate) rise: [f64; CROTCH_PLACES],
     /// Depth of the rearmost of these points (m).
     pub(crate) hindmost: f64,
 }
 
-/// The arm: distances along it from the shoulder joint (m).
+/// Landmarks of the arm: distances from the shoulder joint along the arm (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ArmMarks {
-    /// Middles of the arm at even distances from the shoulder joint, from [`ARM_BEGINS`] of the wrist's
-    /// distance on (m).
+    /// Centres of the arm's sections at even distances from the shoulder joint, the first at [`ARM_BEGINS`]
+    /// times the wrist's distance (m).
     pub(crate) middles: [Vec3; ARM_MIDDLES],
     pub(crate) upper_arm: f64,
     pub(crate) elbow: f64,
@@ -99,7 +98,7 @@ pub(crate) struct ArmMarks {
     pub(crate) finger_tip: u32,
 }
 
-/// The leg: heights (m).
+/// Landmarks of the leg: heights (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LegMarks {
     pub(crate) lower_thigh: f64,
@@ -110,8 +109,8 @@ pub(crate) struct LegMarks {
     pub(crate) heel: Plane,
 }
 
-/// Number of stored middles of the arm, distance of the first from the shoulder joint, and distance between
-/// them, over the wrist's distance from the shoulder joint.
+/// Number of stored centres of the arm, distance of the first from the shoulder joint, and distance between
+/// two of them, over the wrist's distance from the shoulder joint.
 pub(crate) const ARM_MIDDLES: usize = 24;
 pub(crate) const ARM_BEGINS: f64 = 0.2;
 pub(crate) const ARM_STEP: f64 = 0.05;
@@ -119,23 +118,23 @@ pub(crate) const ARM_STEP: f64 = 0.05;
 /// Number of stored points of the crotch's line.
 pub(crate) const CROTCH_PLACES: usize = 21;
 
-/// Distance between these points, and largest stored rise, over stature.
+/// Distance between two of the [`CROTCH_PLACES`] points, and largest stored rise, as shares of stature.
 const CROTCH_STEP: f64 = 0.01;
 const CROTCH_RISE: f64 = 0.045;
 
 /// Number of stored sections of the trunk.
 pub(crate) const SECTIONS: usize = 9;
 
-/// Distance of the end of the shoulder beyond the shoulder joint, over stature.
+/// Distance of the end of the shoulder beyond the shoulder joint, as a share of stature.
 const TIP: f64 = 0.003;
 
 /// Share of the way from the neck's base to the base of the skull that lies below any chin.
 const BELOW_CHIN: f64 = 0.4;
 
-/// Share of that way at which the middle of the neck lies.
+/// Share of the way from the neck's base to the base of the skull at which the centre of the neck lies.
 const NECK: f64 = 0.42;
 
-/// Distance of the underbust below the bust, over stature.
+/// Distance of the underbust below the bust, as a share of stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
 /// Range of the calf's height, over the knee's.
 const CALF: [f64; 2] = [0.55, 0.9];
@@ -229,7 +228,7 @@ impl TemplateMarks {
     }
 }
 
-/// Mean depth of the middle of the trunk between two heights (m).
+/// Mean depth of the centre of the trunk between two heights (m).
 fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
     let middle = |y: f64| {
         let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
@@ -240,11 +239,11 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
         .sum()
 }
 
-/// Range of the distance of a bust point from the middle, over the distance of the end of the shoulder.
+/// Range of the distance of a bust point from the median plane, over the distance of the end of the shoulder.
 const BUST_POINT: [f64; 2] = [0.45, 0.6];
 
-/// The left bust point at a height (m): the foremost point, but on a flat chest no nearer to the middle than
-/// usual.
+/// The left bust point at a height (m): the foremost point, but on a flat chest no nearer to the median plane
+/// than usual.
 fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     let trunk = (0..skin.mesh.triangles.len()).filter(|&t| skin.parts[t] == Part::Trunk);
     let section = horizontal_section(&skin.mesh, trunk, y);
@@ -258,7 +257,7 @@ fn bust_point(skin: &TemplateSkin, y: f64, shoulder: f64) -> Vec3 {
     Vec3::new(x, y, near.map_or(0.0, |p| p.y))
 }
 
-/// Rise of the body's middle line behind and in front of a crotch at a height, on a body of a stature (m).
+/// Rise of the body's midline behind and in front of a crotch at a height, on a body of a stature (m).
 fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
     let most = CROTCH_RISE * stature;
     let is_middle = |v: u32| skin.mirror[v as usize] == v;
@@ -314,7 +313,8 @@ fn heel_plane(template: &Template, skinned: &Skinned) -> Plane {
     [heel, instep, heel + Vec3::x()]
 }
 
-/// Middles of the left arm along its axis from the shoulder; points of the axis where the arm has no section.
+/// Centres of the left arm's sections along its axis from the shoulder; where the arm has no section, the
+/// point of the axis.
 fn arm_middles(skinned: &Skinned, [shoulder, along]: [Vec3; 2], wrist: f64) -> [Vec3; ARM_MIDDLES] {
     std::array::from_fn(|k| {
         let on_axis = shoulder + along * ((ARM_BEGINS + ARM_STEP * k as f64) * wrist);
@@ -346,7 +346,7 @@ fn lowest(mesh: &TriangleMesh, vertices: &[u32]) -> f64 {
     heights.fold(f64::INFINITY, f64::min)
 }
 
-/// Height of the lowest point in the middle (m).
+/// Height of the lowest point in the median plane (m).
 fn crotch(skin: &TemplateSkin) -> f64 {
     (0..skin.mesh.positions.len())
         .filter(|&v| skin.mirror[v] as usize == v)

@@ -17,12 +17,12 @@ pub(crate) struct Underarm {
     rows: Vec<Row>,
     /// Vertices of the arm that may come near the trunk.
     near: Vec<u32>,
-    /// Columns of the trunk's side under the arm, from front to back, each from the lowest row up to the
-    /// arm's border.
+    /// Columns of vertices on the trunk's side under the arm, from front to back, each from the lowest row up
+    /// to the arm's border.
     side: Vec<Vec<u32>>,
 }
 
-/// A vertex with its share of smoothing and its neighbours.
+/// A vertex with the share to which it is smoothed, and its neighbours.
 struct Row {
     vertex: u32,
     share: f64,
@@ -30,8 +30,8 @@ struct Row {
 }
 
 impl Underarm {
-    /// Selects vertices on a template with the shoulder at a height (m): those of the arm's first rings,
-    /// which follow the arm in part, below the shoulder. Smoothing decreases towards the shoulder.
+    /// Selects vertices on a template with the shoulder at a height (m): vertices below the shoulder in the
+    /// arm's first rings, which follow the arm only in part. Smoothing decreases towards the shoulder.
     pub(crate) fn of(mesh: &TriangleMesh, arm: &[f64], side: &[Vec<u32>], shoulder: f64) -> Self {
         /// Range of the share with which vertices of these rings follow the arm: those of the border and of
         /// the trunk follow it less.
@@ -134,7 +134,8 @@ impl Underarm {
     }
 }
 
-/// Point of a column at a height; the top of the column if that is lower; `None` below its foot.
+/// Point of a column at a height; the top of the column if the column ends lower; `None` below the foot of
+/// the column.
 fn at_height(column: &[Vec3], y: f64) -> Option<Vec3> {
     let next = column.partition_point(|p| p.y <= y);
     match (next.checked_sub(1), column.get(next)) {

@@ -31,7 +31,7 @@ pub(crate) struct Warp {
     trunk: TrunkWarp,
     arm: ArmWarp,
     leg: LegWarp,
-    /// Shoulder, elbow and wrist, if the map is the identity.
+    /// Positions of shoulder, elbow and wrist (m); `None` unless the map is the identity.
     still: Option<[Vec3; 3]>,
     /// Lowest point of the crotch on the template (m).
     crotch: Vec3,
@@ -82,7 +82,7 @@ impl Warp {
         mapped
     }
 
-    /// Depth of the sides of a girth, which part its front from its back (m).
+    /// Depth of the side lines of a girth, which divide it into front and back (m).
     pub(crate) fn side_of(&self, girth: Girth) -> f64 {
         self.trunk.shape().trunk.side_depth[girth]
     }
@@ -101,7 +101,7 @@ impl Warp {
         }
     }
 
-    /// Height on the template of a height on the body (m).
+    /// Height on the template that corresponds to a height on the body (m).
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.trunk.template_level(height)
     }
@@ -136,7 +136,7 @@ impl Warp {
         [self.shoulder() + along, self.arm.to[0]]
     }
 
-    /// Distance along the template's arm of a distance along the body's arm from the shoulder joint (m).
+    /// Distance along the template's arm that corresponds to a distance along the body's arm (m).
     pub(crate) fn arm_distance(&self, along: f64) -> f64 {
         match self.is_still() {
             true => along,
@@ -153,7 +153,8 @@ impl Warp {
         (p - shoulder).dot(&along)
     }
 
-    /// Images of three axes through a point: half the vector between the images of their two ends.
+    /// Images of three axes of a primitive at a point: half the vector between the images of the two ends of
+    /// each axis.
     pub(crate) fn carried_axes(&self, p: Vec3, axes: Matrix3<f64>, follow: Follow) -> Matrix3<f64> {
         let column = |k: usize| {
             let axis = axes.column(k).into_owned();

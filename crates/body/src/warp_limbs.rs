@@ -6,7 +6,7 @@ use crate::template::Joints;
 use crate::template_marks::TemplateMarks;
 use toile_geometry::Vec3;
 
-/// Length down the thigh over which the form of the leg's top fades out, over stature.
+/// Length down the thigh over which the form of the leg's top fades out, as a share of stature.
 const LEG_TOP: f64 = 0.09;
 
 /// The map of the left arm.
@@ -14,7 +14,7 @@ const LEG_TOP: f64 = 0.09;
 pub(crate) struct ArmWarp {
     /// Scale about the axis over the template's distance from the shoulder joint.
     scale: Monotone,
-    /// Distance from the shoulder joint on the body over that on the template (m).
+    /// Distance from the shoulder joint on the body, by the distance on the template (m).
     pub(crate) length: Monotone,
     /// The shoulder joint of the template (m).
     pub(crate) shoulder: Vec3,
@@ -60,7 +60,7 @@ pub(crate) struct LegWarp {
     axis: [Vec3; 3],
     /// Sideways scale of the position of the axis (1).
     stance: f64,
-    /// Factor by which the top is broader and less deep (1).
+    /// Factor by which the top of the leg is broader and less deep (1).
     top_breadth: f64,
     /// Ratio of statures, body to template.
     stature_ratio: f64,

@@ -8,16 +8,16 @@ use crate::shape::Shape;
 use crate::template_marks::{CROTCH_PLACES, TemplateMarks};
 use toile_geometry::Vec3;
 
-/// Extents of a bust sideways, up and down from its point, over stature.
+/// Extents of a bust sideways, up and down from its point, as a share of stature.
 const BUST_REACH: [f64; 3] = [0.06, 0.10, 0.045];
 
-/// Distances sideways, up and down over which a flat crotch changes the body, over stature.
+/// Distances sideways, up and down over which a flat crotch changes the body, as a share of stature.
 const CROTCH_REACH: [f64; 3] = [0.06, 0.15, 0.10];
 
 /// The map, for points of the left half, x >= 0. Curves are over template height.
 #[derive(Clone)]
 pub(crate) struct TrunkWarp {
-    /// Height on the body (m).
+    /// Height on the body, by height on the template (m).
     height: Monotone,
     /// Scales of sections, and changes of the fullness of their corners (1).
     lateral: Monotone,
@@ -25,18 +25,18 @@ pub(crate) struct TrunkWarp {
     back: Monotone,
     corner_fullness: Monotone,
     corner_asymmetry: Monotone,
-    /// Half the breadth, and depths in front of and behind the middle, on the template (m).
+    /// Half the breadth, and depths in front of and behind the centre of the section, on the template (m).
     extents: [Monotone; 3],
     /// Depth about which sections are scaled (m).
     middle_on_template: Monotone,
     middle_on_body: Monotone,
-    /// Rise of the body's middle line above the crotch by depth on the template (m).
+    /// Rise of the body's midline above the crotch by depth on the template (m).
     crotch_rise: Monotone,
     marks: TemplateMarks,
     shape: Shape,
 }
 
-/// Rises of the body's middle line above the crotch, by depth (m).
+/// Rises of the body's midline above the crotch, by depth (m).
 fn crotch_rise(marks: &TemplateMarks) -> Vec<[f64; 2]> {
     (0..CROTCH_PLACES)
         .map(|k| [marks.crotch_depth(k), marks.crotch.rise[k]])
@@ -75,7 +75,7 @@ impl TrunkWarp {
         let y = p.y + armpit / self.shape.stature_ratio;
         let fuller = self.fuller(Vec3::new(p.x, y, p.z));
         let depth = (p.z - self.middle_on_template.at(y)) * fuller;
-        // The scale changes from the back's to the front's across the middle of the body.
+        // The scale changes from that of the back to that of the front across the centre of the section.
         let before = smooth_step(0.5 + depth / (0.09 * self.marks.crown));
         let [front, back] = [self.front.at(y), self.back.at(y)];
         let frontal = back + (front - back) * before;
@@ -91,8 +91,8 @@ impl TrunkWarp {
         self.height.at(p.y - self.sunk(p))
     }
 
-    /// Distance by which a point is moved forward with the bust point (m): all of it there, none outside the
-    /// bust.
+    /// Distance by which a point is moved forward with the bust point (m): the whole distance at the bust
+    /// point, 0 outside the bust.
     fn projection(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
         let [across, up, down] = BUST_REACH.map(|reach| reach * m.crown);
@@ -116,7 +116,7 @@ impl TrunkWarp {
         self.shape.bust.projection * full * before
     }
 
-    /// Factor by which a point of the trunk lies farther out from the middle of its section. With the point's
+    /// Factor by which a point of the trunk lies farther out from the centre of its section. With the point's
     /// direction t in a section scaled to breadth and depth 1 it is `1 + c sin^2(2 t)`, so that breadth and
     /// depth stay and the corners between them are filled.
     fn fuller(&self, p: Vec3) -> f64 {
@@ -127,7 +127,7 @@ impl TrunkWarp {
         if fullness == 0.0 {
             return 1.0;
         }
-        // Below and above the known sections, those at the ends are used.
+        // Below and above the known sections, the sections at the ends are used.
         let [first, last] = [self.marks.trunk.sections[0][0], self.marks.bust.height];
         let y = p.y.clamp(first, last);
         let [breadth, front, back] = [0, 1, 2].map(|k| self.extents[k].at(y));
@@ -136,8 +136,8 @@ impl TrunkWarp {
         1.0 + fullness * 4.0 * u * v / (u + v).max(0.5).powi(2)
     }
 
-    /// Share by which a point in front of the chest moves sideways with the bust points: all of it there,
-    /// none at the sides, above and below.
+    /// Share by which a point in front of the chest moves sideways with the bust points: the whole share at
+    /// their height in front, 0 at the sides, above and below.
     fn spread(&self, p: Vec3, depth: f64) -> f64 {
         let m = &self.marks;
         let half = 1.02 * m.shoulder.tip.x;
@@ -150,8 +150,8 @@ impl TrunkWarp {
         self.shape.bust.spread * ((1.0 - u) * (1.0 - v)).powi(2) * before
     }
 
-    /// Rises of a point with the end of the shoulder and with the armpit (m): all of it there, none at the
-    /// neck and at the bust.
+    /// Rises of a point with the end of the shoulder and with the armpit (m): the whole rise at these two
+    /// points, 0 at the neck and at the bust.
     fn rise(&self, p: Vec3) -> [f64; 2] {
         let m = &self.marks;
         let inner = 0.92 * m.neck.side.x;
@@ -166,7 +166,7 @@ impl TrunkWarp {
         [self.shape.shoulder.tip_rise * up * out, armpit * out]
     }
 
-    /// Depth by which a point of the template is lowered where the crotch is flatter (m): the body's middle
+    /// Depth by which a point of the template is lowered if the crotch is flatter (m): the body's midline
     /// sinks by a share of its rise above the crotch, points beside it by less.
     fn sunk(&self, p: Vec3) -> f64 {
         let m = &self.marks;
@@ -201,7 +201,7 @@ impl TrunkWarp {
         ]
     }
 
-    /// Height on the template of a height on the body (m).
+    /// Height on the template that corresponds to a height on the body (m).
     pub(crate) fn template_level(&self, height: f64) -> f64 {
         self.height.inverse(height)
     }

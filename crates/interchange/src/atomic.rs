@@ -39,11 +39,12 @@ pub fn check_folder(folder: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Creates a folder if need be and writes several files into it. All of them are on the disk
-/// under temporary names before the first takes its own.
+/// Creates a folder if it does not exist and writes several files into it. All of them are on the disk under
+/// temporary names before the first one is renamed to its own name.
 ///
 /// # Errors
-/// As [`write_atomically`]; if any file cannot be staged, none is replaced.
+/// As [`write_atomically`]; if one of the files cannot be written under its temporary name, no file is
+/// replaced.
 pub fn write_all_atomically<Name: AsRef<Path>, Bytes: AsRef<[u8]>>(
     folder: &Path,
     files: &[(Name, Bytes)],
@@ -57,7 +58,7 @@ pub fn write_all_atomically<Name: AsRef<Path>, Bytes: AsRef<[u8]>>(
     staged.into_iter().try_for_each(Staged::commit)
 }
 
-/// A file under a temporary name, complete and on the disk. Dropping it removes it.
+/// A file under a temporary name, complete and on the disk. Dropping the value removes the file.
 struct Staged {
     file: NamedTempFile,
     target: PathBuf,
@@ -131,7 +132,7 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
 }
 
 /// Makes the new name itself survive a loss of power, on systems that can do so. The file is already
-/// complete, so a failure loses nothing and is not reported.
+/// complete, so a failure of this step is harmless and not reported.
 fn sync_folder_of(file: &Path) {
     let folder = match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

@@ -89,7 +89,7 @@ fn shortened(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// Largest number of joints and of frames accepted: a file with more is damaged.
+/// Largest number of joints and largest number of frames that are accepted: a file with more is damaged.
 const MOST: [usize; 2] = [1000, 200_000];
 
 /// Reads a BVH file and maps its motion to a skeleton. Joints are recognised by their usual names (CMU's,
@@ -162,7 +162,7 @@ fn upright(bones: &[Bone]) -> UnitQuaternion<f64> {
     let up = Vec3::ith(axis, up[axis].signum());
     match axis {
         1 if up.y > 0.0 => UnitQuaternion::identity(),
-        // The figure stands on its head; turned about z it still faces forward.
+        // The figure stands on its head; turned about z, it still faces forward.
         1 => UnitQuaternion::new(Vec3::z() * PI),
         _ => UnitQuaternion::rotation_between(&up, &Vec3::y()).unwrap_or_default(),
     }
@@ -297,7 +297,7 @@ fn joint_named(name: &str) -> Option<Joint> {
     })
 }
 
-/// The joint at the far end of a joint's own bone, which gives the direction of the bone.
+/// The joint at the far end of the bone that begins at `joint`; it gives the direction of the bone.
 fn end_of(joint: Joint) -> Option<Joint> {
     use Joint::*;
     let limbs = [
@@ -312,9 +312,10 @@ fn end_of(joint: Joint) -> Option<Joint> {
 
 /// Maps the file's bones to a skeleton's joints.
 pub(crate) struct Carrier {
-    /// The file's bone of each joint.
+    /// For each joint, the index of the bone in the file.
     bone: [Option<usize>; Joint::COUNT],
-    /// Rotation of each joint's bone from its rest direction in the skeleton to that in the file.
+    /// For each joint, the rotation from the direction of its bone at rest in the skeleton to that in the
+    /// file.
     align: [UnitQuaternion<f64>; Joint::COUNT],
     /// Length of the legs of the file's figure, and the rest position of the root, in the file's unit.
     leg: f64,
@@ -347,7 +348,7 @@ impl Carrier {
         let mut align = [UnitQuaternion::identity(); Joint::COUNT];
         for joint in Joint::ALL {
             let Some(end) = end_of(joint) else {
-                // Hands and feet take the rest rotation of the bone above them.
+                // Hands and feet take the rest rotation of the bone that they are attached to.
                 if let Some(parent) = joint.parent()
                     && end_of(parent).is_some()
                 {

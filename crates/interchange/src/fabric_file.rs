@@ -9,16 +9,16 @@ use toile_drape::{Material, MaterialLaws};
 /// A fabric in a file of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FabricFile {
-    /// Its name; nothing where the file gives none.
+    /// Name of the fabric; `None` if the file gives no name.
     pub name: Option<String>,
-    /// Its material. What the file leaves out is that of the library's fabric it names, else the
-    /// default.
+    /// Material of the fabric. A value that the file leaves out is taken from the library fabric that the
+    /// file names, else from the default material.
     pub material: Material,
-    /// Fields that are not known here, and what else is worth telling.
+    /// Notes on unknown fields, and other notes for the user.
     pub notes: Vec<String>,
 }
 
-/// Head of a file of figures; the rest is a material.
+/// Head of a file with the values of a material; the other fields of the file are those of the material.
 #[derive(Deserialize)]
 struct Figures {
     toile: u32,
@@ -27,11 +27,11 @@ struct Figures {
     material: MaterialFile,
 }
 
-/// Reads a fabric file: JSON of the kind `fabric` with the fields of a scene's material, or test
-/// values as [`read_fabric_test`] takes them.
+/// Reads a fabric file: JSON of the kind `fabric` with the fields of a scene's material, or the test values
+/// that [`read_fabric_test`] reads.
 ///
 /// # Errors
-/// Text that is neither, fields of the wrong kind, or figures that no cloth has.
+/// Text of neither kind, fields of the wrong type, or values that no cloth can have.
 pub fn read_fabric(text: &str) -> Result<FabricFile, FormatError> {
     let head: Option<Value> = serde_json::from_str(text).ok();
     let says = |field: &str| head.as_ref().and_then(|head| head.get(field)?.as_str());

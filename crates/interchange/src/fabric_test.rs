@@ -12,18 +12,18 @@ use toile_fabric::{KesValues, Material};
 /// The test values of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FabricTest {
-    /// The material of the values; what was not measured is that of [`Material::default`].
+    /// Material with the tested values; values that were not measured are those of [`Material::default`].
     pub material: Material,
-    /// Share of a fold that stays, where the bending hysteresis is given.
+    /// Share of a fold that remains, if the bending hysteresis is given (1).
     pub kept_fold: Option<f64>,
-    /// Cusick's drape coefficient (%), to compare a drape with.
+    /// Cusick's drape coefficient (%), to compare a simulated drape with.
     pub drape_coefficient: Option<f64>,
 }
 
 /// Reads test values; text that begins with `{` is JSON, other text CSV.
 ///
 /// # Errors
-/// Text that is neither, names that are not known, values that are missing or no numbers.
+/// Text of neither kind, unknown names, values that are missing or are not numbers.
 pub fn read_fabric_test(text: &str) -> Result<FabricTest, FormatError> {
     let values = if text.trim_start().starts_with('{') {
         json(text)?
@@ -40,7 +40,7 @@ pub fn read_fabric_test(text: &str) -> Result<FabricTest, FormatError> {
     Reader { values }.read()
 }
 
-/// Names of the values, each with its place in the JSON form.
+/// Names of the test values, each with the object that holds it in the JSON form.
 const NAMES: [(&str, &str); 18] = [
     ("kes", "B"),
     ("kes", "2HB"),
@@ -143,7 +143,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// Both values of a name, which must be finite and above zero.
+    /// Values of a property along warp and weft, which must be finite and above zero.
     fn pair(&self, name: &str) -> Result<Option<[f64; 2]>, FormatError> {
         let Some(&(_, pair)) = self.values.iter().find(|(n, _)| *n == name) else {
             return Ok(None);
@@ -186,7 +186,8 @@ impl Reader {
         })
     }
 
-    /// EM and LT, either of them from the other and WT: WT = LT EM 500 gf/cm / 2.
+    /// Tensile values EM (extension) and LT (linearity). Either is computed from the other and the energy WT:
+    /// WT = LT EM 500 gf/cm / 2.
     fn tensile(&self, material: &mut Material) -> Result<(), FormatError> {
         let (lt, wt) = (self.pair("LT")?, self.pair("WT")?);
         let em = match (self.pair("EM")?, lt, wt) {
@@ -211,7 +212,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Bending from B, else from the cantilever. Returns the share of folds kept.
+    /// Bending stiffness from B, else from the cantilever test. Returns the share of a fold that remains (1).
     fn bending(&self, material: &mut Material) -> Result<Option<f64>, FormatError> {
         let density = material.density;
         let mut kept = None;

@@ -22,7 +22,7 @@ pub struct FrameHead {
     pub surfaces: Vec<FrameSurface>,
 }
 
-/// A surface: one object, or several that are sewn together.
+/// A surface: one object, or several objects that are sewn together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrameSurface {
@@ -30,7 +30,7 @@ pub struct FrameSurface {
     pub name: String,
     /// The objects of the surface: name, index of the first triangle and index after the last one.
     pub objects: Vec<(String, [usize; 2])>,
-    /// Number of its vertices.
+    /// Number of the surface's vertices.
     pub vertices: usize,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
@@ -42,7 +42,7 @@ pub struct FrameSurface {
     pub rest: Option<RestShape>,
 }
 
-/// A cloth without its positions; see [`Cloth`].
+/// The properties of a cloth except its positions; see [`Cloth`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestShape {
@@ -219,7 +219,7 @@ impl FrameSection {
     }
 }
 
-/// Encodes the heads and records of a file of frames; the caller appends them to the file.
+/// Encodes the heads and records of a file of frames; the caller appends the bytes to the file.
 #[derive(Clone, Debug)]
 pub struct FrameWriter {
     /// CRC-32 of the head.
@@ -246,7 +246,7 @@ impl FrameWriter {
     /// The bytes of one record.
     ///
     /// # Errors
-    /// The frame has another number of positions than the section, or one that is not finite.
+    /// The frame has another number of positions than the section, or a position that is not finite.
     pub fn record(&self, frame: &Frame) -> Result<Vec<u8>, FormatError> {
         check_frame(frame, self.vertices)?;
         let mut bytes = Vec::with_capacity(FRAMING + POSITION * self.vertices);

@@ -43,8 +43,9 @@ pub struct GlbPrimitive {
     pub colour: [f64; 3],
 }
 
-/// Pattern positions beyond this are moved towards the origin before rounding to `f32` (m). Below it the
-/// rounding is at most 6e-8 m, so that a distance between two positions is exact to 1.7e-7 m.
+/// Pattern positions farther from the origin than this are moved towards the origin before rounding to `f32`
+/// (m). Within it the rounding is at most 6e-8 m, so that a distance between two positions is exact to 1.7e-7
+/// m.
 const CENTRED_WITHIN: f64 = 2.0;
 
 /// Writes a scene as GLB.

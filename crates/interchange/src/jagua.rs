@@ -216,7 +216,7 @@ pub fn write_jagua(
 }
 
 /// Items and the usable width of a strip as an instance, in millimetres with the grain along x; also returns
-/// the properties that the format cannot hold. On one-way fabric only rotation 0 is allowed.
+/// the properties that the format cannot express. On one-way fabric only rotation 0 is allowed.
 ///
 /// # Errors
 /// A number is not finite.

@@ -45,7 +45,7 @@ struct MannequinFile {
     joined: Vec<Vec<usize>>,
 }
 
-/// Properties of one primitive, which is numbered from 0 over trunk, head, arm and leg.
+/// Properties of one primitive; primitives are numbered from 0 over trunk, head, arm and leg.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ParticularRow {

@@ -73,7 +73,7 @@ impl Default for MarkerFacts {
 pub struct MarkerPiece {
     /// Name written on the piece.
     pub name: String,
-    /// Number of the item, shared by all its copies: they are filled with one colour.
+    /// Number of the item; all copies of an item have the same number and are filled with one colour.
     pub item: usize,
     /// Drawing of the piece, in the piece's own plane.
     pub piece: Arc<CutPiece>,
@@ -91,7 +91,7 @@ impl MarkerDrawing {
         self.length * f64::from(self.facts.plies)
     }
 
-    /// Price of the fabric needed.
+    /// Price of the fabric needed; `None` if the price of a metre is unknown.
     pub fn cost(&self) -> Option<f64> {
         Some(self.facts.price_per_metre? * self.yardage())
     }

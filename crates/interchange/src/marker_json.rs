@@ -143,9 +143,9 @@ pub struct MarkerFilePiece {
     pub item: usize,
     /// Number of the copy, from 0.
     pub copy: u32,
-    /// Direction of the warp in the piece as drawn, counter-clockwise from +x (deg).
+    /// Direction of the warp on the piece as drawn, counter-clockwise from +x (deg).
     pub grain: f64,
-    /// Angle from the warp to the piece's grain (deg).
+    /// Angle from the warp of the fabric to the grain of the laid piece (deg).
     pub turn: f64,
     /// Whether the piece lies face down: it is turned over across the grain before it is rotated.
     pub face_down: bool,

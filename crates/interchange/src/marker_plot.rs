@@ -55,7 +55,7 @@ pub fn write_marker_hpgl(drawing: &MarkerDrawing) -> Result<String, FormatError>
     drawing.check_numbers()?;
     let all = Strokes::of(drawing);
     let mut hpgl = HpglWriter::new(Vec2::new(drawing.length, drawing.strip.width));
-    // Fabric first, then markings, then cuts: nothing is drawn after it is cut.
+    // Fabric first, then markings, then cuts: no line is drawn on a piece that has been cut out.
     for pen in [3, 2, 1] {
         for stroke in all.strokes.iter().filter(|s| s.layer.pen() == pen) {
             hpgl.polyline(pen, &stroke.points, stroke.closed);
@@ -131,7 +131,7 @@ pub(crate) struct PlotLook {
     pub words: bool,
 }
 
-/// Fill of overlaps, which would be cut twice.
+/// Fill of regions where pieces overlap, which would be cut twice.
 const CUT_TWICE: [f32; 3] = [0.9, 0.0, 0.0];
 
 /// Draws a marker on a page.

@@ -47,7 +47,7 @@ fn empty_page() -> PdfPage {
     PdfPage::new(Vec2::from(PAGE))
 }
 
-/// A column of a table: x position (m) and alignment of the text there.
+/// A column of a table: x position (m), and alignment of the text at that position.
 type Column = (f64, Align);
 
 impl Report {

@@ -70,7 +70,7 @@ fields!(LockSettings, |self, v| {
 });
 
 impl PieceSettings {
-    /// These settings, with gaps filled from more general ones.
+    /// These settings, with missing ones filled from the more general settings `below`.
     #[must_use]
     pub fn over(self, below: &Self) -> Self {
         let Self {
@@ -88,8 +88,8 @@ impl PieceSettings {
     }
 }
 
-/// Fabric settings that this kind of file expresses in another way: length as a roll, tilt as a rule for all
-/// pieces, the currency once for the whole file.
+/// Fabric settings that this kind of file expresses in another way: the length as a roll, the tilt as a rule
+/// for all pieces, the currency once for the whole file.
 const SAID_OTHERWISE: [&str; 3] = ["length", "tilt", "currency"];
 
 /// Reads a file of marker settings.

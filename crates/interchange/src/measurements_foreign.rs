@@ -70,7 +70,7 @@ pub(crate) fn looks_like_freesewing(text: &str) -> bool {
         .any(|name| text.contains(name))
 }
 
-/// Enters a value into a table; of two names for one measurement the first counts.
+/// Enters a value into a table; if two names of the file mean one measurement, the first value counts.
 pub(crate) fn put(
     table: &mut Measurements,
     name: &str,

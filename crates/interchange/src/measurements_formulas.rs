@@ -14,8 +14,8 @@ pub(crate) struct Written {
     pub text: String,
 }
 
-/// Values of numbers and formulas, in the file's unit and order. A formula may name measurements before or
-/// after it; an empty text means not measured and has value 0.
+/// Values of numbers and formulas, in the file's unit and order. A formula may name measurements that stand
+/// before or after it; an empty text means "not measured" and has the value 0.
 ///
 /// # Errors
 /// An invalid formula, a name that the table does not have, formulas that depend on each other.
@@ -36,7 +36,7 @@ pub(crate) fn values_of(rows: &[Written]) -> Result<Vec<f64>, FormatError> {
         }
         numbers.push(number);
     }
-    // Evaluates formulas whose inputs are known, until none is left or all that are left form a cycle.
+    // Evaluates formulas whose inputs are known, until all are evaluated or the remaining ones form a cycle.
     while !formulas.is_empty() {
         let is_known = |word: &str| by_name.get(word).is_none_or(|&k| numbers[k].is_some());
         let ready: Vec<usize> = formulas

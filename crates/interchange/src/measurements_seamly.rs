@@ -285,9 +285,9 @@ fn number_of(
     }
 }
 
-/// Contradictions in published tables, in which a name was given to another measurement. The first
-/// measurement must be less than the factor times the second; else the listed ones are left out, for the
-/// reason given.
+/// Contradictions in published tables, in which a name was given to another measurement: two measurements, a
+/// factor, the measurements to leave out, and the reason. If the first measurement is not less than the
+/// factor times the second, the listed measurements are left out.
 const LESS: [(&str, f64, &str, &[&str], &str); 3] = [
     (
         "waist_to_highhip_f",

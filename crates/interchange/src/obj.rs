@@ -15,11 +15,11 @@ pub struct ObjMesh {
     pub triangles: Vec<[u32; 3]>,
     /// Positions in the panel's plane (m), y up; may be empty.
     pub texture: Vec<Vec2>,
-    /// Indices of each triangle's corners into `texture`: one entry per triangle, or none at all.
+    /// Indices of each triangle's corners into `texture`: one entry per triangle, or an empty list.
     pub texture_triangles: Vec<[u32; 3]>,
     /// Unit normals; may be empty.
     pub normals: Vec<Vec3>,
-    /// Indices of each triangle's corners into `normals`: one entry per triangle, or none at all.
+    /// Indices of each triangle's corners into `normals`: one entry per triangle, or an empty list.
     pub normal_triangles: Vec<[u32; 3]>,
     /// Named ranges of triangles, in order.
     pub groups: Vec<ObjGroup>,

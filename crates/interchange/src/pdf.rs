@@ -10,7 +10,7 @@ use toile_lettering::{shortened, width};
 
 /// Points of a PDF per metre (1/m).
 const POINTS: f64 = 72.0 / 0.0254;
-/// Longest side of a page in its own units (PDF 1.7, annex C); longer pages use a larger unit.
+/// Longest side of a page in default user units (PDF 1.7, annex C); longer pages use a larger unit.
 const LONGEST: f64 = 14_400.0;
 
 /// A colour: red, green, blue (0 to 1).
@@ -50,7 +50,7 @@ enum Part {
     },
 }
 
-/// The part of a text that its position refers to, on the baseline.
+/// The part of a text that its position refers to: start, middle or end of the baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Align {
     Left,
@@ -88,7 +88,7 @@ impl PdfPage {
         }
     }
 
-    /// Begins a layer: everything drawn up to its end belongs to it.
+    /// Begins a layer: everything drawn until [`Self::end_layer`] belongs to the layer.
     pub fn begin_layer(&mut self, layer: usize) {
         self.layers.insert(layer);
         self.content
@@ -101,7 +101,7 @@ impl PdfPage {
         self.content.end_marked_content();
     }
 
-    /// Begins a section of marked content with a name, up to its end.
+    /// Begins a section of marked content of the given name; [`Self::end_kind`] ends the section.
     pub fn begin_kind(&mut self, name: &str) {
         self.content.begin_marked_content(Name(name.as_bytes()));
     }
@@ -111,7 +111,7 @@ impl PdfPage {
         self.content.end_marked_content();
     }
 
-    /// Begins a clip: only drawing inside the bounds (m) is visible, up to the end of the clip.
+    /// Begins a clip: until [`Self::end_clip`], drawing is visible only inside the bounds (m).
     pub fn clip(&mut self, bounds: &Bounds2) {
         let (low, size) = (bounds.min, bounds.size());
         let [x, y, width, height] = [low.x, low.y, size.x, size.y].map(|m| self.units(m));
@@ -153,7 +153,7 @@ impl PdfPage {
         self.content.fill_even_odd();
     }
 
-    /// Draws a line with a width (m) and a dash length (m), solid if that is 0.
+    /// Draws a line of a width (m) with dashes of a length (m); the line is solid if the dash length is 0.
     pub fn stroke(&mut self, points: &[Vec2], closed: bool, (width, dash, ink): (f64, f64, Ink)) {
         let (width, dash) = (self.units(width), self.units(dash));
         self.content.set_stroke_rgb(ink[0], ink[1], ink[2]);
@@ -307,8 +307,8 @@ impl PdfSheets {
     }
 }
 
-/// Breaks a text of a letter size (m) into lines of at most a width (m), between words; longer words are cut
-/// off.
+/// Breaks a text of a letter size (m) between words into lines of at most `width` (m); a word that is longer
+/// than a line is cut off.
 pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     let fits = |line: &str| toile_lettering::width(line) * size <= width;
     let mut lines: Vec<String> = Vec::new();
@@ -324,7 +324,7 @@ pub(crate) fn wrapped(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-/// The longest start of a text of a letter size (m) that fits a width (m).
+/// The longest start of a text of a letter size (m) that fits into a width (m).
 pub(crate) fn fitted(text: &str, size: f64, width: f64) -> String {
     shortened(text, width / size)
 }

@@ -22,10 +22,10 @@ pub(crate) struct PdfFonts {
     fonts: Vec<PdfFont>,
 }
 
-/// The used part of a font.
+/// The used glyphs of an embedded font.
 struct PdfFont {
     font: Arc<Font>,
-    /// Glyphs with the characters they stand for, in the order of their codes, from 1.
+    /// Glyphs with the characters that they stand for, in the order of their codes, from 1.
     letters: Vec<(u16, String)>,
 }
 
@@ -47,7 +47,7 @@ impl PdfFonts {
         content.end_text();
     }
 
-    /// Draws glyphs one by one, each at its own position, so that readers need not add up glyph widths.
+    /// Draws glyphs one by one, each at its own position, so that PDF readers need not add up glyph widths.
     fn show_run(&mut self, content: &mut Content, run: &Run, (size, matrix): (f32, [f32; 6])) {
         let place = self.place_of(&run.font);
         let name = font_name(place);
@@ -104,8 +104,9 @@ fn font_name(place: usize) -> String {
 }
 
 impl PdfFont {
-    /// The code of a glyph that stands for some characters. In a CFF font each glyph has one code, since PDF
-    /// numbers such glyphs by index alone: the glyph stands for the characters of its first use.
+    /// The code of a glyph that stands for the characters `text`. In a CFF font a glyph has only one code,
+    /// since PDF selects such glyphs by their index alone: the glyph stands for the characters of its first
+    /// use.
     fn code(&mut self, glyph: u16, text: &str) -> u16 {
         let by_glyph = self.font.kind == OutlineKind::Cff;
         if by_glyph && glyph == 0 {

@@ -164,7 +164,7 @@ struct Element {
 }
 
 impl Element {
-    /// The values of each property in the next row; `None` if the row cannot be read.
+    /// The values of each property in the next row of the element's data; `None` if the row cannot be read.
     fn row(&self, data: &mut Data<'_>) -> Option<Vec<Vec<f64>>> {
         let values = |property: &Property| {
             let count = match property.length {

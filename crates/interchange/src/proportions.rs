@@ -3,7 +3,7 @@
 use crate::FormatError;
 use toile_body::ProportionBox;
 
-/// The built-in table: stature in heads by sex and age, after published canons.
+/// The built-in table: stature in head lengths by sex and age, after published canons.
 const TABLE: &str = include_str!("proportions.json");
 
 /// The built-in proportion boxes.

@@ -17,7 +17,7 @@ use serde_json::{Map, Value};
 /// A kind of file that can be told from its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// Nothing but white space.
+    /// Only white space.
     Empty,
     /// Text in UTF-16.
     Utf16,
@@ -77,7 +77,7 @@ pub enum FileKind {
     Report,
     /// A journal of commands.
     Journal,
-    /// A fabric: test values or figures.
+    /// A fabric: test values, or values of a material.
     Fabric,
 }
 
@@ -169,7 +169,7 @@ impl FileKind {
         }
     }
 
-    /// A more specific remedy than giving another file.
+    /// Remedy for a kind of file that is more specific than "give another file".
     fn remedy(self) -> Option<&'static str> {
         match self {
             Self::Empty => Some("it holds nothing: it may not have been saved"),
@@ -254,7 +254,7 @@ impl ExpectedKind {
         }
     }
 
-    /// The supported formats, for the remedy.
+    /// The formats that this kind of reader supports, for the remedy.
     fn reads(self) -> &'static str {
         match self {
             Self::Pattern => {

@@ -223,7 +223,7 @@ pub struct CollisionFile {
 pub struct ObjectFile {
     /// Name, unique in the scene.
     pub name: String,
-    /// `static`, `animated` or `deformable`.
+    /// Kind of the object: `static`, `animated` or `deformable`.
     pub kind: String,
     /// An OBJ file, with a path relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -241,14 +241,14 @@ pub struct ObjectFile {
     /// A mannequin: `woman`, `man`, `mean`, or a file of measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
-    /// A file of recorded frames: the motion of an animated object, or the start of a deformable one; or a
-    /// point cache (PC2) of the object's mesh.
+    /// A file of recorded frames (the motion of an animated object, or the initial state of a deformable
+    /// one), or a point cache (PC2) of the object's mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frames: Option<String>,
-    /// Name of the object in the recording. Default: the object of the same name, or the only one.
+    /// Name of the object in the recording. Default: the object of the same name, or the only one that moves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// The frame that a deformable object starts from, counted from 0. Default: the last.
+    /// The frame that a deformable object starts from, counted from 0. Default: the last frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
     /// Frame rate of a point cache (1/s).

@@ -9,13 +9,13 @@ use std::fmt;
 use strum::VariantNames;
 use toile_fabric::{Compression, FIGURES, Figure, FigureValue, LIBRARY, LibraryFabric, Material};
 
-/// A cloth in a scene; figures that it leaves out are those of the fabric named, else of
+/// A cloth in a scene. Values that the file leaves out are those of the fabric `fabric`, or else of
 /// [`Material::default`].
 #[derive(Clone, Debug, Default)]
 pub struct MaterialFile {
     /// Name of a fabric of the library.
     pub fabric: Option<String>,
-    /// The figures given.
+    /// The values given in the file.
     pub figures: Vec<(&'static Figure, FigureValue)>,
     pub(crate) unknown: Unknown,
 }
@@ -46,7 +46,7 @@ impl<'de> Deserialize<'de> for MaterialFile {
     }
 }
 
-/// Reads a cloth from an object.
+/// Reads a [`MaterialFile`] from a JSON object.
 struct MaterialReader;
 
 impl<'de> Visitor<'de> for MaterialReader {
@@ -85,10 +85,10 @@ impl MaterialFile {
         Some(&found.1)
     }
 
-    /// The material, with the fabric's figures or defaults where nothing is written.
+    /// The material: the values given in the file; all others from the named fabric, or else the defaults.
     ///
     /// # Errors
-    /// A fabric or a kind of compression that is not known; `place` says where it stands.
+    /// An unknown fabric or kind of compression; `place` is the place of the material in the file.
     pub fn material(&self, place: &str) -> Result<Material, FormatError> {
         let usual = match &self.fabric {
             None => Material::default(),
@@ -106,16 +106,15 @@ impl MaterialFile {
         self.over(usual, place)
     }
 
-    /// The fields that are not known here, taken out.
+    /// Takes the unknown fields out of the material and returns their names.
     pub(crate) fn take_unknown(&mut self) -> Vec<String> {
         std::mem::take(&mut self.unknown).into_keys().collect()
     }
 
-    /// The material with the figures of another, `usual`, where nothing is written, whatever
-    /// fabric is named.
+    /// The material: the values given in the file; all others from `usual`, whatever fabric the file names.
     ///
     /// # Errors
-    /// A kind of compression that is not known; `place` says where it stands.
+    /// An unknown kind of compression; `place` is the place of the material in the file.
     pub fn over(&self, usual: Material, place: &str) -> Result<Material, FormatError> {
         usual.with(&self.figures).map_err(|(figure, word)| {
             let known: Vec<String> = Compression::VARIANTS

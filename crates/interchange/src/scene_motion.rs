@@ -9,8 +9,8 @@ use toile_geometry::Vec3;
 /// Unknown fields, by name.
 pub(crate) type Unknown = BTreeMap<String, Value>;
 
-/// A motion as written. A solid moves by keys, linearly from key to key, at rest before the first and after
-/// the last. A body moves by a clip, and keys turn it about itself.
+/// A motion as written in the file. A solid moves by keys, linearly from key to key, and rests before the
+/// first key and after the last. A body moves by a clip, and keys turn it about itself.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct MotionFile {
     /// The pivot of rotations, in the scene (m).
@@ -78,7 +78,7 @@ impl MotionFile {
         given.map(|(field, _)| field).collect()
     }
 
-    /// The motion described by the keys, without the clip.
+    /// The motion that the keys describe; the clip is ignored.
     pub fn motion(&self) -> Motion {
         let keys = self.keys.iter().map(|key| MotionKey {
             time: key.time,

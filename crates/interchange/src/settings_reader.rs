@@ -63,7 +63,7 @@ pub struct SettingsReader<'s, 'a> {
     item: Item<'a>,
     /// Name of the expected type, for the error if another type is found.
     expected: &'s str,
-    /// Fields of the part that this kind of file does not have.
+    /// Fields of the part that this kind of file does not use, and refuses.
     without: &'s [&'s str],
     /// Fields that another reader reads.
     besides: &'s [&'s str],

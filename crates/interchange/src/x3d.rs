@@ -14,7 +14,7 @@ const RATE: f64 = 30.0;
 /// Longest animation cycle accepted (s): a file with a longer one is damaged.
 const LONGEST: f64 = 3600.0;
 
-/// Rotations with their times as fractions of the cycle.
+/// Rotations, each with its time as a fraction of the cycle.
 struct Turns(Vec<(f64, UnitQuaternion<f64>)>);
 
 impl Turns {
@@ -37,9 +37,9 @@ impl Turns {
 /// ROUTE connects to a joint rotates that joint. Joints are recognised by their H-Anim names, from the name
 /// field of the Joint node or its DEF, with or without `hanim_`. A PositionInterpolator connected to the root
 /// moves the body. The TimeSensor gives the duration (one second without it) and whether the clip loops.
-/// Bones point as in the file if its joints have centres; otherwise a figure with hanging arms is assumed. If
-/// several TimeSensors drive interpolators of joints, each is a clip, and the first is taken. Also returns
-/// notes on everything left out.
+/// Bones have the directions of the file if its joints have centres; otherwise a figure with hanging arms is
+/// assumed. If several TimeSensors drive interpolators of joints, each is a clip, and the first is taken.
+/// Also returns notes on everything left out.
 ///
 /// # Errors
 /// The fault, the line or node of it and the remedy; also a file that rotates no joint.
@@ -372,7 +372,7 @@ fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> 
         .into_iter()
         .zip(value.chunks(width).map(<[f64]>::to_vec))
         .collect();
-    // Of equal keys the last one counts.
+    // Of keys at the same time the last one counts.
     rows.reverse();
     rows.dedup_by(|a, b| a.0 == b.0);
     rows.reverse();

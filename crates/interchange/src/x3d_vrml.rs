@@ -135,7 +135,8 @@ fn begun(tokens: &[(usize, Token)], at: usize) -> Node {
     }
 }
 
-/// The index after a prototype: its fields belong to no node, and its body is not part of the scene.
+/// The index after a prototype, which is skipped: its fields belong to no node, and its body is not part of
+/// the scene.
 fn after_prototype(tokens: &[(usize, Token)], at: usize) -> Result<usize, FormatError> {
     let (line, word) = (tokens[at].0, tokens[at].1.text());
     let name = tokens.get(at + 1).map_or("", |t| t.1.text());
@@ -147,8 +148,8 @@ fn after_prototype(tokens: &[(usize, Token)], at: usize) -> Result<usize, Format
     }
 }
 
-/// The index after the bracket that closes the one at `from`, or `from` if there is none; `None` if the
-/// bracket is not closed.
+/// The index after the bracket that closes the one at `from`; `from` itself if no bracket opens there; `None`
+/// if the bracket is not closed.
 fn after_brackets(tokens: &[(usize, Token)], from: usize) -> Option<usize> {
     let mut depth = 0;
     for (k, (_, token)) in tokens.iter().enumerate().skip(from) {
@@ -178,8 +179,8 @@ fn route(tokens: &[(usize, Token)], at: usize) -> Result<Route, FormatError> {
     Ok(Route::new(parts(at + 1).0, parts(at + 3), line))
 }
 
-/// The words of a field that starts at `from`: those in brackets, or consecutive numbers, or one word; `None`
-/// for a field taken from a prototype. Also returns the index after them.
+/// The words of a field that starts at `from`: the words in brackets, or consecutive numbers, or one word;
+/// `None` for a field taken from a prototype. Also returns the index after these words.
 fn values(tokens: &[(usize, Token)], from: usize) -> (Option<Vec<String>>, usize) {
     let rest = tokens.get(from..).unwrap_or_default();
     let listed = |part: &[(usize, Token)]| {

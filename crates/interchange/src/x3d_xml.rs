@@ -21,7 +21,8 @@ pub(crate) fn read(text: &str) -> Result<Scene, FormatError> {
     Ok(scene)
 }
 
-/// Adds an element inside the node `within` to the scene; returns the index of the new node, if it is one.
+/// Adds an element inside the node `within` to the scene; returns the index of the new node, if the element
+/// is a node.
 fn take_up(
     scene: &mut Scene,
     element: Element<'_, '_>,

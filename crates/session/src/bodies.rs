@@ -11,8 +11,8 @@ use toile_interchange::{
 };
 use toile_measure::{Measurements, Origin};
 
-/// Makes a body choice of a description, with the measurements that a tape takes on the body.
-/// Refuses a body whose primitives leave a hole.
+/// Makes a body choice from a description, with the measurements that a tape takes on the body. Refuses a
+/// body whose primitives leave a hole.
 pub(crate) fn shaped(
     description: Description,
     path: Option<PathBuf>,
@@ -30,7 +30,7 @@ pub(crate) fn shaped(
     })
 }
 
-/// The body of a mannequin file.
+/// Reads a mannequin file and makes the body that it describes.
 ///
 /// # Errors
 /// The file cannot be read, is not a mannequin file, or no body can be made from it.
@@ -38,7 +38,7 @@ pub(crate) fn mannequin_of(path: &Path) -> Result<BodyChoice, SessionError> {
     Ok(shaped(open_mannequin(path)?, Some(path.to_owned()))?)
 }
 
-/// Reads the description if the file is a mannequin file; none if it is of another kind.
+/// Reads the description in a mannequin file; `None` if the file is of another kind.
 fn described(path: &Path) -> Result<Option<Description>, SessionError> {
     let bytes = read_file(path)?;
     match FileKind::of(&bytes) {
@@ -87,7 +87,7 @@ pub(crate) fn description_of(project: &Project) -> Description {
 /// Reads edits of primitives from a file that holds them as a JSON list.
 ///
 /// # Errors
-/// The file cannot be read, or is no such list.
+/// The file cannot be read, or does not hold a list of edits.
 pub fn open_body_edits(path: &Path) -> Result<Vec<PrimitiveEdit>, SessionError> {
     serde_json::from_str(&read_input(path, ExpectedKind::SmallJson)?).map_err(|error| SessionError::Format {
         path: path.to_owned(),
@@ -99,7 +99,7 @@ pub fn open_body_edits(path: &Path) -> Result<Vec<PrimitiveEdit>, SessionError> 
     })
 }
 
-/// Edits the primitives of the body described, or else of the body of a project.
+/// Edits the primitives of the body in `described`; without it, those of the project's body.
 ///
 /// # Errors
 /// An edit that cannot be made, with the remedy.
@@ -150,7 +150,8 @@ pub fn proportions_named(text: &str) -> Result<ProportionBox, SessionError> {
     })
 }
 
-/// Proportion box for a stature of so many heads, interpolated between the boxes that ship.
+/// Proportion box for a stature of `heads` head lengths, interpolated between the boxes that ship with the
+/// program.
 pub fn proportions_of_heads(heads: f64) -> ProportionBox {
     ProportionBox::of_heads(heads, &proportion_boxes())
 }

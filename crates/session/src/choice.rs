@@ -9,8 +9,8 @@ use toile_measure::Measurements;
 /// The body that the garment is draped on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum BodyChoice {
-    /// As the pattern says: a woman of the pattern's size; an average adult if the pattern has no
-    /// sizes.
+    /// The body that the pattern asks for: a woman of the pattern's size, or an average adult if the pattern
+    /// has no sizes.
     #[default]
     OfPattern,
     /// A sample body: the figure with its average measurements, overlaid with the chosen size.
@@ -19,7 +19,7 @@ pub enum BodyChoice {
     Measured {
         /// Figure that the body is grown from.
         figure: Figure,
-        /// File that the measurements come from; none if they were typed.
+        /// File that the measurements come from; `None` if they were typed.
         path: Option<PathBuf>,
         /// The measurements (m), (rad).
         measurements: Arc<Measurements>,
@@ -28,7 +28,7 @@ pub enum BodyChoice {
     Shaped {
         /// Description that the body is made from.
         description: Arc<Description>,
-        /// Mannequin file; none once the body was edited.
+        /// Mannequin file; `None` once the body was edited.
         path: Option<PathBuf>,
         /// Measurements that a tape takes on the body (m), (rad).
         measurements: Arc<Measurements>,
@@ -62,7 +62,8 @@ impl BodyChoice {
         }
     }
 
-    /// Name to print on paper: that of a sample figure, else of the file; "the wearer" without a file.
+    /// Short name of the wearer to print on paper: the name of the sample figure or of the file, else "the
+    /// wearer".
     pub fn short_name(&self) -> String {
         let path = match self {
             Self::OfPattern => None,
@@ -78,7 +79,7 @@ impl BodyChoice {
         }
     }
 
-    /// Description of a body of its own primitives; none of a body that is grown to measurements.
+    /// Description of a body with its own primitives; `None` for a body that is grown to measurements.
     pub(crate) fn description(&self) -> Option<&Arc<Description>> {
         match self {
             Self::Shaped { description, .. } => Some(description),
@@ -115,12 +116,12 @@ pub(crate) fn sample_of(figure: Figure) -> Measurements {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// Edges of 25 mm, to a residual of 1e-2: a quick look.
+    /// Mesh edges of 25 mm, draped to a residual of 1e-2: a quick look.
     Preview,
-    /// Edges of 15 mm, to a residual of 5e-3: good enough to judge the fit.
+    /// Mesh edges of 15 mm, draped to a residual of 5e-3: good enough to judge the fit.
     #[default]
     Fit,
-    /// Edges of 10 mm, to a residual of 1e-3: for the finished picture.
+    /// Mesh edges of 10 mm, draped to a residual of 1e-3: for the finished picture.
     Final,
 }
 
@@ -134,8 +135,8 @@ impl Quality {
         }
     }
 
-    /// Mean edge length of a coarser mesh that is sewn and swings first (m); none if that of
-    /// [`Self::edge_length`] is coarse enough. A garment with a gathered seam has no coarser mesh.
+    /// Mean edge length of a coarser mesh on which the garment is sewn and swings first (m); `None` if the
+    /// mesh of [`Self::edge_length`] is coarse enough. A garment with a gathered seam has no coarser mesh.
     pub fn first_edge_length(self) -> Option<f64> {
         match self {
             Self::Preview | Self::Fit => None,
@@ -152,7 +153,7 @@ impl Quality {
         }
     }
 
-    /// Most steps of the solve for rest; a finer mesh needs more.
+    /// Largest number of steps of the solve for rest; a finer mesh needs more.
     pub fn steps(self) -> usize {
         match self {
             Self::Preview => 400,

@@ -27,7 +27,7 @@ use toile_drape::Input;
 use toile_measure::Measurements;
 use toile_pattern::Edit;
 
-/// Rough shares of the work of making a garment, for progress.
+/// Weights of the stages of making a garment in its progress bar.
 const DRAPING: f64 = 80.0;
 const LAYING: f64 = 7.0;
 const WRITING: f64 = 7.0;
@@ -41,9 +41,10 @@ pub enum Command {
         /// The file.
         path: PathBuf,
     },
-    /// Sets the point of the body that files opened from now on place their panels round.
+    /// Sets the origin that the panels of pattern files opened from now on are placed round: a point of the
+    /// body.
     SetOrigin {
-        /// The point.
+        /// The point of the body.
         origin: PanelOrigin,
     },
     /// Replaces the project by an empty pattern.
@@ -56,7 +57,7 @@ pub enum Command {
     RestorePattern {
         /// The pattern, as the text of a file.
         text: String,
-        /// The file it was last saved to.
+        /// The file that the pattern was last saved to.
         source: Option<PathBuf>,
         /// Steps of the history that led to the pattern and can be undone, the newest first.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -67,7 +68,7 @@ pub enum Command {
         /// The file.
         path: PathBuf,
     },
-    /// Changes the pattern. All edits are made or none.
+    /// Changes the pattern. Either all edits are made or none.
     Edit {
         /// The edits.
         edits: Vec<Edit>,
@@ -81,21 +82,21 @@ pub enum Command {
     /// Chooses the body: a figure with average measurements, or the body of a file. Without either,
     /// the body is as the pattern says.
     SetBody {
-        /// The figure; with a file of measurements none means the mean figure.
+        /// The figure; with a file of measurements, `None` means the mean figure.
         figure: Option<Figure>,
         /// A file of measurements, or a mannequin file, which says its figure itself.
         measurements: Option<PathBuf>,
     },
     /// Chooses a body by measurements that are given in the command.
     SetMeasurements {
-        /// Figure that the body is grown from; none means the figure of the present body.
+        /// Figure that the body is grown from; `None` means the figure of the present body.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         figure: Option<Figure>,
         /// The measurements (m), (rad); missing ones are predicted from them.
         measurements: Measurements,
     },
-    /// Edits the primitives of the body, which from then on no longer follows measurements. All
-    /// edits are made or none.
+    /// Edits the primitives of the body, which from then on no longer follows measurements. Either all edits
+    /// are made or none.
     EditBody {
         /// The edits.
         edits: Vec<PrimitiveEdit>,
@@ -109,26 +110,27 @@ pub enum Command {
     },
     /// Chooses a named size of the pattern, or its base size.
     SetSize {
-        /// Name of the size; none for the base size.
+        /// Name of the size; `None` for the base size.
         size: Option<String>,
     },
     /// Cuts every panel from one fabric, or each from its own.
     SetFabric {
-        /// Name of a fabric of the pattern or the library, or a fabric file; none for each panel's own.
+        /// Name of a fabric of the pattern or the library, or a fabric file; `None` for each panel's own
+        /// fabric.
         fabric: Option<String>,
     },
     /// Chooses the width of the fabric, or the fabric's own.
     SetWidth {
-        /// Width of the roll (m); none for the fabric's own.
+        /// Width of the roll (m); `None` for the fabric's own width.
         width: Option<f64>,
     },
     /// Chooses how finely to mesh and how near to rest to drape.
     SetQuality {
-        /// The quality.
+        /// Quality of mesh and drape.
         quality: Quality,
     },
-    /// Wears garments of other patterns with the project's, in layers; those worn before are taken
-    /// off. A layer of a larger number lies farther out; garments of one number are in no order.
+    /// Wears garments of other patterns with the project's, in layers; those worn before are taken off. A
+    /// layer of a larger number lies farther out; garments with the same number have no order among them.
     SetLayers {
         /// Layer of the project's own garment, 0 to 999.
         layer: u16,
@@ -214,7 +216,7 @@ impl Command {
         }
     }
 
-    /// The file or folder that the command writes, if it does.
+    /// The file or folder that the command writes, if it writes one.
     pub(crate) fn output_mut(&mut self) -> Option<&mut PathBuf> {
         match self.files() {
             NamedFiles::Output(path) => Some(path),
@@ -236,8 +238,8 @@ impl Command {
         }
     }
 
-    /// Stage that the time of the command is counted under, and its rough share of the work of making a
-    /// garment.
+    /// Stage of `timing.json` that the time of the command is added to, and the command's rough share of the
+    /// work of making a garment.
     fn work(&self) -> (Option<&'static str>, f64) {
         match self {
             Self::OpenPattern { .. } => (Some("open"), 1.0),
@@ -269,7 +271,7 @@ impl Command {
         }
     }
 
-    /// Stage that the time of the command is counted under.
+    /// Stage of `timing.json` that the time of the command is added to.
     pub(crate) fn stage(&self) -> Option<&'static str> {
         self.work().0
     }

@@ -7,13 +7,13 @@ use toile_drape::collision::Tally;
 /// run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct Crossings {
-    /// Before the first step.
+    /// Pairs that intersect before the first step.
     start: usize,
-    /// Most at one count.
+    /// Largest number of pairs at one count.
     most: usize,
-    /// After the last step.
+    /// Pairs that intersect after the last step.
     end: usize,
-    /// Steps from one count to the next.
+    /// Number of steps between two counts.
     #[serde(skip)]
     every: usize,
 }
@@ -59,7 +59,7 @@ impl Crossings {
         }
     }
 
-    /// Warning about a run that ends tangled, with a remedy; none if no cloth crosses.
+    /// Warning about a run that ends tangled, with a remedy; `None` if no cloth crosses.
     pub fn warning(&self, cloth_offset: f64) -> Option<String> {
         if self.end == 0 {
             return None;
@@ -83,13 +83,14 @@ impl Crossings {
 /// Edges of cloth that crossed a face of cloth, as a report counts them.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub(crate) struct Tangles {
-    /// At the first detection.
+    /// Crossing edges at the first detection.
     found: usize,
-    /// Most at one detection.
+    /// Largest number of crossing edges at one detection.
     most: usize,
-    /// At the last detection.
+    /// Crossing edges at the last detection.
     left: usize,
-    /// Vertices of outer layers on the inside of inner ones: at the first detection, most, at the last.
+    /// Vertices of outer layers that lie inside inner layers: at the first detection, the most at one
+    /// detection, at the last detection.
     astray: [usize; 3],
 }
 

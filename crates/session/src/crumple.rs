@@ -16,14 +16,14 @@ pub(crate) struct ShortSeam {
     pub hangs: f64,
 }
 
-/// Least share of its cloth by which a seam must hang shorter to be reported (1).
+/// Smallest shortening of a hanging seam that is reported, as a share of the length of its cloth (1).
 const SHORTER: f64 = 0.05;
 /// Length of cloth between two sample points of a seam (m): long enough that folds in between count, short
 /// enough that the curvature of the body does not.
 const SPACING: f64 = 0.06;
 /// Length below which a seam is not examined (m).
 const LEAST: f64 = 0.2;
-/// Least height between the ends of a hanging seam over their distance (1).
+/// Smallest steepness of a seam that counts as hanging: height between its ends over their distance (1).
 const STEEP: f64 = 0.9;
 /// Largest share by which the lengths of the two sides of an uneased seam differ (1).
 const EASED: f64 = 0.03;
@@ -41,9 +41,9 @@ struct Point {
     cloth: f64,
 }
 
-/// Finds the seams that hang in a heap. `target` maps vertices of the garment to merged vertices, `places`
-/// are the positions of those (m). `taut` are merged vertices where the cloth is stretched: there it
-/// contracts across the stretch, so that a seam is shorter without a fold.
+/// Finds the seams that hang in a heap. `target` maps vertices of the garment to merged vertices; `places`
+/// are the positions of the merged vertices (m). `taut` are merged vertices where the cloth is stretched:
+/// there it contracts across the stretch, so that a seam is shorter without a fold.
 pub(crate) fn short_seams(
     job: &GarmentJob,
     target: &[u32],
@@ -74,7 +74,7 @@ pub(crate) fn short_seams(
     short.collect()
 }
 
-/// Vertices near a gathered seam, by the distance in their flat piece.
+/// Vertices near a gathered seam; the distance is measured in the flat piece.
 fn near_gathers(job: &GarmentJob) -> BTreeSet<u32> {
     let garment = &job.garment;
     let gathered = garment.stitches.iter().filter(|stitch| {
@@ -99,8 +99,8 @@ fn near_gathers(job: &GarmentJob) -> BTreeSet<u32> {
     near
 }
 
-/// Sample points along a seam, with the length of cloth on its shorter side; none if the sides differ in
-/// length, or if a side passes from one panel to another.
+/// Sample points along a seam, with the length of cloth on its shorter side; `None` if the two sides differ
+/// in length, or if a side passes from one panel to another.
 fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Option<Vec<Point>> {
     let flat = &job.garment.flat;
     let panel_of = |v: u32| {
@@ -129,8 +129,8 @@ fn line(job: &GarmentJob, pairs: &[[u32; 2]], point: &dyn Fn(u32) -> Vec3) -> Op
 
 /// Length of cloth, and length as it hangs, of a seam that hangs shorter than its cloth (m). Both are
 /// measured along straight lines between the same points, so that a seam cut in a curve does not count as
-/// short. A single fold, as under an arm, is no heap: the seam must be as short without the stretch that lost
-/// most.
+/// short. A single fold, as under an arm, is no heap: the seam must also be too short without the section
+/// between two points that is shortened most.
 fn hanging(points: &[Point]) -> Option<[f64; 2]> {
     let (first, last) = (points.first()?, points.last()?);
     let length = last.cloth;

@@ -151,12 +151,12 @@ impl Derived {
         self.drape = self.drape.take().or(other.drape);
     }
 
-    /// Takes over the mannequin of `other` alone.
+    /// Takes over only the mannequin of `other`.
     pub fn adopt_mannequin(&mut self, other: Self) {
         self.mannequin = other.mannequin.or(self.mannequin.take());
     }
 
-    /// Every value of the pattern, brought up to date.
+    /// Evaluation of all values of the pattern, updated to the present project.
     pub fn evaluation(&mut self, project: &Project) -> Arc<Evaluation> {
         let wearer = match self.drafted_for.take() {
             Some(known) if known.holds_for(project) => &self.drafted_for.insert(known).wearer,
@@ -172,7 +172,7 @@ impl Derived {
         kept.clone()
     }
 
-    /// Drops the draft and its diagnostics, while a gesture is shown.
+    /// Discards the draft and its diagnostics, for the preview of a gesture.
     pub fn forget_draft(&mut self) {
         self.draft = None;
         self.diagnostics = None;
@@ -188,7 +188,7 @@ impl Derived {
         }
     }
 
-    /// The draft, cut from the fabric that was chosen.
+    /// The draft of the project's own pattern, cut from the chosen fabric.
     pub fn draft(&mut self, project: &Project) -> Arc<Draft> {
         if let Some(draft) = &self.draft {
             return draft.clone();
@@ -257,7 +257,7 @@ impl Derived {
         Ok(self.mannequin.insert(kept))
     }
 
-    /// Lays the markers, or returns those laid before.
+    /// Lays the markers, or returns the markers laid before.
     pub fn finished_markers(
         &mut self,
         project: &Project,
@@ -323,7 +323,7 @@ impl Derived {
         self.job_put_on(project, &outfit, &put_on)
     }
 
-    /// The job of an outfit that was put on as `put_on` says.
+    /// The drape job of an outfit that was put on as `put_on` says.
     fn job_put_on(
         &mut self,
         project: &Project,
@@ -367,7 +367,7 @@ impl Derived {
         Ok(made)
     }
 
-    /// Drapes a garment that fell off the body once more, put on the other way; an error if it falls again.
+    /// Drapes a garment that fell off the body once more, put on another way; an error if it falls off again.
     fn drape_otherwise(
         &mut self,
         project: &Project,

@@ -21,10 +21,10 @@ pub(crate) struct Drape {
     pub target: Vec<u32>,
     /// Triangle of the job's garment for every triangle of `mesh`.
     pub origin: Vec<u32>,
-    /// Larger stretch of warp and weft of every triangle of `mesh`.
+    /// Stretch of every triangle of `mesh`: the larger of its stretch along warp and along weft (1).
     pub stretch: Vec<f64>,
     pub measures: Measures,
-    /// Steps of sewing and of settling.
+    /// Number of steps of sewing and of settling.
     pub steps: [usize; 2],
     /// Largest seam gap in the step before merging (m).
     pub seam_gap: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Drape {
 }
 
 impl Drape {
-    /// The drape of a run, at rest or where the run stopped.
+    /// Result of a run, at rest or where the run stopped.
     pub fn of(handled: &mut InteractiveRun) -> Self {
         let held = handled.is_held();
         let inputs = handled.applied().to_vec();

@@ -23,7 +23,7 @@ pub(crate) struct DressedFigure {
 /// A sewn garment in the position in which it hangs.
 pub(crate) struct HungGarment {
     pub cloth: Cloth,
-    /// Whether the strain of each triangle counts, as it does away from gathers.
+    /// For each triangle, whether its strain counts in reports; it does not near gathers.
     pub counted: Vec<bool>,
 }
 
@@ -81,7 +81,7 @@ fn worn_by<'a>(
 }
 
 impl DressedFigure {
-    /// Sews and drapes all garments that a body of a scene wears; none if it wears nothing.
+    /// Sews and drapes all garments that a body of a scene wears; `None` if it wears no garment.
     ///
     /// # Errors
     /// Patterns that cannot be read or sewn, garments of several qualities.

@@ -49,7 +49,7 @@ pub enum SessionError {
     /// An edit was refused.
     #[error("{0}")]
     Edit(#[from] toile_pattern::EditError),
-    /// A name of something that does not exist.
+    /// A command names something that does not exist.
     #[error("there is no {kind} {name:?}; {hint}")]
     Unknown {
         /// Kind of thing, as in "size".
@@ -97,13 +97,13 @@ pub enum SessionError {
         "the garment falls off the body: it was put on {tried}; give it a waist, straps or shoulders that hold it, or say where its panels are worn"
     )]
     FallsOff {
-        /// Ways in which the garment was put on, and that it fell.
+        /// Words for the ways in which the garment was put on and fell off.
         tried: String,
     },
     /// A picture cannot be drawn.
     #[error("picture: {0}")]
     Picture(#[from] toile_picture::PictureError),
-    /// A command has nothing to work on.
+    /// A command such as Undo has nothing to act on.
     #[error("there is nothing to {action}; {hint}")]
     Nothing {
         /// Action that was asked for, as in "undo".
@@ -134,7 +134,7 @@ impl SessionError {
         Self::FallsOff { tried }
     }
 
-    /// Whether the input is at fault, and not the work on it.
+    /// Whether the user's input caused the error, and not the work on it.
     pub fn is_bad_input(&self) -> bool {
         match self {
             Self::File(error) => error.action == "read",

@@ -16,9 +16,9 @@ pub enum Event {
     },
     /// The pattern was checked.
     Checked {
-        /// Faults that keep the garment from being made.
+        /// Number of faults that keep the garment from being made.
         errors: usize,
-        /// Faults that are probably not intended.
+        /// Number of faults that are probably not intended.
         warnings: usize,
     },
     /// The pieces of one fabric were laid.
@@ -51,28 +51,28 @@ impl Event {
 /// A garment's mesh in a few numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembled {
-    /// Pieces of cloth that are sewn.
+    /// Number of pieces of cloth that are sewn.
     pub panels: usize,
-    /// Vertices before merging.
+    /// Number of vertices before seams are merged.
     pub vertices: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
-    /// Vertex pairs that seams join.
+    /// Number of vertex pairs that seams join.
     pub stitches: usize,
 }
 
 /// A drape in a few numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Draped {
-    /// Steps of sewing and of settling.
+    /// Number of steps of sewing and of settling.
     pub steps: [usize; 2],
     /// Net force over weight (1).
     pub residual: f64,
     /// Largest seam gap in the step before merging (m).
     pub seam_gap: f64,
-    /// Connected parts of the mesh after sewing.
+    /// Number of connected parts of the mesh after sewing.
     pub components: usize,
-    /// Pairs of cloth and body triangles that intersect.
+    /// Number of pairs of a cloth triangle and a body triangle that intersect.
     pub body_intersections: usize,
     /// Largest stretch along warp and weft (1).
     pub strain_max: [f64; 2],

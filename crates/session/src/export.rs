@@ -35,8 +35,8 @@ use toile_interchange::{
 };
 use toile_marker::{FinishedMarker, MarkerFormat, marker_files};
 
-/// Shares of an export that are done when the markers are laid, when the garment hangs, and when its pieces
-/// are printed.
+/// Progress of an export (1) when the markers are laid, when the garment hangs, and when its pieces are
+/// printed.
 const DONE: [f64; 3] = [0.08, 0.9, 0.94];
 
 /// Results that an export writes.
@@ -49,12 +49,12 @@ struct Subject {
 
 impl Export {
     /// Whether the garment is draped for the export. A report covers the garment and the marker that are
-    /// exported with it; alone it covers both.
+    /// exported with it; a report exported alone covers both.
     pub(crate) fn takes_garment(&self) -> bool {
         self.takes(ExportFormat::is_of_garment)
     }
 
-    /// Whether the pieces are laid for the export.
+    /// Whether a marker is laid for the export.
     pub fn takes_marker(&self) -> bool {
         self.takes(ExportFormat::is_of_marker)
     }
@@ -84,7 +84,8 @@ impl Export {
 }
 
 impl Session {
-    /// Writes files into a folder, all or none. Markers and drape that the files need are made first.
+    /// Writes files into a folder; if one cannot be written, none is. Markers and drape that the files need
+    /// are made first.
     pub(crate) fn export(
         &mut self,
         export: &Export,
@@ -113,7 +114,7 @@ impl Session {
             }
         }
         write_all_atomically(&export.dir, &files)?;
-        // The files are on the disk: the wish to stop comes too late.
+        // The files are on the disk: a request to stop comes too late and is ignored.
         let _ = report_progress(watcher, "writing", 1.0, "");
         let paths = files.iter().map(|(name, _)| export.dir.join(name));
         events.push(Event::FilesWritten {

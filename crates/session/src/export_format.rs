@@ -50,11 +50,12 @@ impl Export {
 pub enum ExportFormat {
     /// `garment.glb`: the garment as binary glTF, UVs in metres.
     Glb,
-    /// `garment.obj`, a group for each panel; of several garments `layer-1-NAME.obj`, ... too.
+    /// `garment.obj`, a group for each panel; for several garments also one file for each,
+    /// `layer-1-NAME.obj`.
     Obj,
     /// `drape.png`: the garment worn.
     Drape,
-    /// `fit.png`: how much the cloth is stretched.
+    /// `fit.png`: the stretch of the cloth as a colour map.
     Fit,
     /// `marker.svg`: the pieces on the fabric at true size.
     MarkerSvg,
@@ -68,7 +69,7 @@ pub enum ExportFormat {
     MarkerReport,
     /// `marker.plt`: HPGL/2.
     MarkerPlt,
-    /// `marker-instance.json`: the pieces alone, for other nesting programs.
+    /// `marker-instance.json`: only the pieces, for other nesting programs.
     MarkerInstance,
     /// `pieces.pdf`: the pieces on sheets of A4 at true size.
     PiecesPdf,
@@ -115,7 +116,7 @@ impl ExportFormat {
         }
     }
 
-    /// Whether the format is written if none is asked for.
+    /// Whether the format is written if the user asks for no format.
     pub fn is_usual(self) -> bool {
         match self {
             Self::Glb
@@ -146,7 +147,7 @@ impl ExportFormat {
         self.of_marker().is_some()
     }
 
-    /// The same format among those of markers; none if it shows no marker.
+    /// The marker format that corresponds to this format; `None` if this format shows no marker.
     pub(crate) fn of_marker(self) -> Option<MarkerFormat> {
         match self {
             Self::MarkerSvg => Some(MarkerFormat::Svg),

@@ -12,23 +12,23 @@ use toile_pattern::{Draft, Fabric, FabricId, Pattern};
 /// Width of a roll of a fabric that comes without one (m).
 const WIDTH: f64 = 1.5;
 
-/// A fabric that takes the place of every panel's.
+/// A fabric that replaces the fabric of every panel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FabricChoice {
-    /// One of the pattern's, or of the library.
+    /// A fabric of the pattern or of the library, by its name.
     Named(String),
-    /// One of a file.
+    /// A fabric of a fabric file.
     File {
         /// The file.
         path: PathBuf,
-        /// What it says; nothing where it could not be read when the pattern that names it was
+        /// Content of the file; `None` if the file could not be read when the pattern that names it was
         /// opened.
         fabric: Option<Arc<Fabric>>,
     },
 }
 
 impl FabricChoice {
-    /// Its name; that of its file where that could not be read.
+    /// Name of the fabric; path of the file if the file could not be read.
     pub fn name(&self) -> &str {
         match self {
             Self::Named(name) => name,
@@ -40,7 +40,7 @@ impl FabricChoice {
         }
     }
 
-    /// The fabric, if it is of a file that could be read.
+    /// The fabric that was read from a fabric file, if the choice is one.
     pub fn of_file(&self) -> Option<&Fabric> {
         match self {
             Self::Named(_) => None,
@@ -48,8 +48,8 @@ impl FabricChoice {
         }
     }
 
-    /// The fabric, for a pattern; nothing where neither it nor the library has one of that name, or
-    /// its file could not be read.
+    /// The fabric that the pieces of `pattern` are cut from; `None` if neither the pattern nor the library
+    /// has a fabric of that name, or if the fabric file could not be read.
     pub(crate) fn fabric(&self, pattern: &Pattern) -> Option<Fabric> {
         match self {
             Self::Named(name) => fabric_of(pattern, name),
@@ -57,7 +57,7 @@ impl FabricChoice {
         }
     }
 
-    /// Cuts every piece of a draft from it.
+    /// Makes `fabric` the only fabric of a draft and cuts every piece from it.
     pub(crate) fn cut(fabric: Fabric, draft: &mut Draft) {
         draft.fabrics = vec![fabric];
         for piece in &mut draft.pieces {
@@ -66,10 +66,10 @@ impl FabricChoice {
     }
 }
 
-/// The fabric asked for by its name or its file, with what is worth telling.
+/// Finds a fabric by its name or reads it from its file, with notes for the user.
 ///
 /// # Errors
-/// A name that is not there, with those that are; a file that cannot be read.
+/// An unknown name (the message lists the known names), or a file that cannot be read.
 pub(crate) fn chosen(
     pattern: &Pattern,
     asked: &str,
@@ -94,7 +94,7 @@ pub(crate) fn chosen(
     Ok((choice, notes))
 }
 
-/// The fabric of a garment in a file, with what is worth telling.
+/// Reads the fabric of a garment from a file, with notes for the user.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -110,7 +110,7 @@ pub(crate) fn is_known_fabric(pattern: &Pattern, name: &str) -> bool {
     fabric_of(pattern, name).is_some()
 }
 
-/// The fabric in a file.
+/// Reads a fabric file.
 ///
 /// # Errors
 /// The file cannot be read.
@@ -121,7 +121,7 @@ pub(crate) fn open_fabric(path: &Path) -> Result<FabricFile, SessionError> {
     })
 }
 
-/// A fabric by name: one of the pattern's, else one of the library.
+/// Finds a fabric by its name: first in the pattern, then in the library.
 fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
     let own = pattern.fabrics.iter().find(|f| f.name == name);
     match own {
@@ -130,7 +130,8 @@ fn fabric_of(pattern: &Pattern, name: &str) -> Option<Fabric> {
     }
 }
 
-/// A fabric of the library as one that a pattern can have; nothing where there is none of that name.
+/// A fabric of the library in the form that a pattern stores; `None` if the library has no fabric of that
+/// name.
 pub fn library_fabric(name: &str) -> Option<Fabric> {
     let library = LibraryFabric::named(name)?;
     Some(Fabric {
@@ -139,8 +140,8 @@ pub fn library_fabric(name: &str) -> Option<Fabric> {
     })
 }
 
-/// The fabric of the library that most figures of a fabric are those of, three at the least: it was copied from
-/// that one.
+/// The library fabric that a fabric was copied from: the one that agrees with it in the most groups of values
+/// (see `figures`), in at least three of the six.
 pub fn library_origin(fabric: &Fabric) -> Option<&'static LibraryFabric> {
     let own = figures(&cloth_material(fabric));
     let shared = |library: &LibraryFabric| {
@@ -151,7 +152,7 @@ pub fn library_origin(fabric: &Fabric) -> Option<&'static LibraryFabric> {
     (shared(nearest) >= 3).then_some(nearest)
 }
 
-/// The figures of a material that a library tells the source of.
+/// Values of a material in the six groups for which the library states a source.
 fn figures(material: &Material) -> [Vec<f64>; 6] {
     [
         vec![material.density],
@@ -163,7 +164,7 @@ fn figures(material: &Material) -> [Vec<f64>; 6] {
     ]
 }
 
-/// A fabric with the hardening that its cloth has: one of a name of the library may say none of its own.
+/// A copy of a fabric whose hardening is the one that its cloth is simulated with (`cloth_material`).
 pub fn with_hardening(fabric: &Fabric) -> Fabric {
     Fabric {
         material: cloth_material(fabric),
@@ -171,7 +172,7 @@ pub fn with_hardening(fabric: &Fabric) -> Fabric {
     }
 }
 
-/// Names that [`fabric_of`] knows, in order.
+/// Names of the fabrics that [`fabric_of`] finds, in alphabetical order.
 fn fabric_names(pattern: &Pattern) -> Vec<&str> {
     let own = pattern.fabrics.iter().map(|f| &*f.name);
     let library = LIBRARY.iter().map(|f| f.name);
@@ -193,8 +194,9 @@ fn on_a_roll(name: &str, material: Material) -> Fabric {
     }
 }
 
-/// The material of a fabric. One that has the name and the stretch of a fabric of the library and no hardening of
-/// its own has that of the library: patterns older than hardening keep the cloth that they name.
+/// The material that a fabric is simulated with. If the fabric has the name and the stretch of a library
+/// fabric but no hardening, it takes the hardening of that library fabric: pattern files older than hardening
+/// keep the cloth that they name.
 pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
     let mut material = fabric.material.clone();
     let library = LibraryFabric::named(&fabric.name).map(LibraryFabric::material);
@@ -207,7 +209,7 @@ pub(crate) fn cloth_material(fabric: &Fabric) -> Material {
     material
 }
 
-/// Figures of the fabrics of a draft that a garment at rest does not show, in words.
+/// Notes on properties of the fabrics of a draft that have no effect on a garment at rest.
 pub(crate) fn unseen_at_rest(draft: &Draft) -> Vec<String> {
     let mut notes = Vec::new();
     for fabric in &draft.fabrics {

@@ -16,13 +16,13 @@ const LIMB_GAP: f64 = 0.012;
 /// Options for playing a clip on a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FigureMotion {
-    /// Rounds of a loop after which the figure stops; none if it goes on.
+    /// Number of rounds of a looped clip after which the figure stops; `None` if it goes on.
     pub strides: Option<f64>,
     /// Speed of playback over that of the clip, 0 to 2 (1).
     pub rate: f64,
     /// Whether the figure travels over the ground, or moves on the spot.
     pub travel: bool,
-    /// Rigid motion that turns the figure about itself and moves it meanwhile.
+    /// Rigid motion over time that turns the figure about itself and moves it.
     pub heading: Option<Motion>,
 }
 
@@ -37,12 +37,12 @@ pub(crate) struct FigureTrack {
     digest: u64,
 }
 
-/// The course of a figure, with notes for the user.
+/// The motion of a figure over time, with notes for the user.
 pub(crate) struct Course {
     pub track: FigureTrack,
     /// Duration of the lead-in, the way into the clip before time 0 (s).
     pub lead_in: f64,
-    /// Time at which the figure has come to rest again (s); none if it goes on.
+    /// Time at which the figure has come to rest again (s); `None` if it goes on.
     pub ends: Option<f64>,
     pub notes: Vec<String>,
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Stamp {
     /// Path of the file, as the command names it.
     pub path: PathBuf,
-    /// Digest of its bytes.
+    /// Digest of the file's bytes.
     digest: String,
     /// Digest of each part of a JSON file: `panels front`, `unit`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -27,7 +27,7 @@ impl Stamp {
         stamps
     }
 
-    /// Stamp of a file as it is now; none if the path is no regular file.
+    /// Stamp of a file as it is now; `None` if the path is no regular file.
     pub fn of(path: &Path) -> Option<Self> {
         if !path.is_file() {
             return None;
@@ -40,7 +40,8 @@ impl Stamp {
         })
     }
 
-    /// Describes the difference between the file then and now; none if it is the same.
+    /// Describes the difference between the file at this stamp and at the stamp `now`; `None` if the file is
+    /// unchanged.
     pub fn difference(&self, now: &Self) -> Option<String> {
         if self.digest == now.digest {
             return None;
@@ -77,7 +78,7 @@ fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step))
 }
 
-/// Digests of the fields of a JSON object; of a list, those of its items by their names or numbers.
+/// Digests of the fields of a JSON object; of a list, digests of its items by their names or numbers.
 fn parts(bytes: &[u8]) -> BTreeMap<String, String> {
     let Ok(Value::Object(fields)) = serde_json::from_slice(bytes) else {
         return BTreeMap::new();

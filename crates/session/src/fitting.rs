@@ -41,7 +41,8 @@ impl Project {
     }
 }
 
-/// Text of a project's file, with paths from the folder of `place`; absolute paths without one.
+/// Text of a project's file, with paths relative to the folder of `place`; absolute paths if `place` is
+/// `None`.
 ///
 /// # Errors
 /// Something that cannot be written, such as a file name that is not text.
@@ -52,13 +53,14 @@ pub(crate) fn document_text(
     write_document(&project.pattern, &fitting_of(project, folder_of(place))?)
 }
 
-/// Folder that the paths in a file start from; none for a pattern without a file (a pipe, a sample).
+/// Folder that relative paths in a pattern file start from; `None` for a pattern without a file (a pipe, a
+/// sample).
 fn folder_of(file: Option<&Path>) -> Option<&Path> {
     let file = file.filter(|file| !is_pipe(file) && !is_sample(file))?;
     Some(file.parent().unwrap_or(Path::new("")))
 }
 
-/// Fitting of a project's garment, with paths from a folder; absolute paths without one.
+/// Fitting of a project's garment, with paths relative to `folder`; absolute paths if it is `None`.
 fn fitting_of(project: &Project, folder: Option<&Path>) -> Result<Fitting, FormatError> {
     let name = |path: &Path| file_name(path, folder);
     let wearer = match &project.body {
@@ -101,7 +103,7 @@ fn fitting_of(project: &Project, folder: Option<&Path>) -> Result<Fitting, Forma
     })
 }
 
-/// Name of a file within a pattern that lies in the folder.
+/// Path by which a pattern file in `folder` names another file.
 fn file_name(path: &Path, folder: Option<&Path>) -> Result<String, FormatError> {
     let whole = match (is_sample(path), folder) {
         (true, _) => path.to_owned(),

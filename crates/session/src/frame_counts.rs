@@ -14,8 +14,8 @@ pub(crate) struct FrameCounts {
     crossing_solids: usize,
     most_solid_pairs: usize,
     most_solid_pairs_at: Option<f64>,
-    /// Most pairs in one frame with a triangle of a solid that is partly inside another part of it, and the
-    /// largest area of such triangles over that of the solids (1).
+    /// Largest number of crossing pairs in one frame whose triangle of the solid lies inside another part of
+    /// the solid, and the largest area of such triangles over the area of the solids (1).
     most_buried_pairs: usize,
     buried_share: f64,
     /// Frames in which cloth crosses cloth, and the most pairs in one frame.
@@ -31,8 +31,8 @@ impl FrameCounts {
         self.frames
     }
 
-    /// Counts a frame; `counted` marks the triangles whose stretch counts. It is ignored once merging removes
-    /// triangles.
+    /// Counts a frame; `counted` marks the triangles whose stretch counts. `counted` is ignored once merging
+    /// has removed triangles.
     pub fn add(&mut self, run: &SceneRun, counted: &[bool]) {
         let counted = match counted.len() == run.system.topology.triangles.len() {
             true => counted,

@@ -14,9 +14,9 @@ use toile_interchange::{
 /// Selection of recorded frames to write.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FramesExport {
-    /// Object to write, or in pictures to follow with the camera; none for all objects.
+    /// Object to write; in pictures, the object that the camera follows. `None` for all objects.
     pub object: Option<String>,
-    /// Frame to write, counted from 0; none for all frames.
+    /// Frame to write, counted from 0; `None` for all frames.
     pub frame: Option<usize>,
 }
 

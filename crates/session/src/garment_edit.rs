@@ -38,10 +38,10 @@ pub enum CannotFollow {
     /// Panels were added, removed or put in another order.
     #[error("the pattern has other panels now; drape it again")]
     Panels,
-    /// The body is another.
+    /// The body has changed.
     #[error("the body is another now; drape it again")]
     Body,
-    /// The quality is another.
+    /// The quality has changed.
     #[error("the cloth is to be finer or coarser now; drape it again")]
     Quality,
     /// A panel is cut from cloth of another material.
@@ -144,7 +144,7 @@ impl Derived {
     }
 }
 
-/// The garment on the same triangles with the shapes of another draft; none if the mesh cannot be morphed.
+/// The garment on the same triangles with the shapes of another draft; `None` if the mesh cannot be morphed.
 fn morphed((old, new): (&MeshedPart, &DraftedPart)) -> Option<MeshedPart> {
     let meshes = match has_same_cloth(&old.part, new) {
         true => PieceMeshes::clone(&old.meshes),

@@ -30,8 +30,8 @@ impl Session {
         self.gesture.is_some()
     }
 
-    /// Commits the present gesture as one step of the history and one command of the journal. Without
-    /// a gesture nothing happens.
+    /// Commits the present gesture as one step of the history and one command of the journal. Does nothing
+    /// without a gesture.
     ///
     /// # Errors
     /// The edits cannot be made, which [`Session::preview`] would have said.

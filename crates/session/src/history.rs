@@ -13,13 +13,13 @@
 use crate::Project;
 use std::collections::VecDeque;
 
-/// Most steps kept.
+/// Largest number of steps in the history.
 const MAX_STEPS: usize = 1000;
-/// Most steps that are restored after a crash.
+/// Largest number of steps that are restored after a crash.
 const MAX_RESTORED_STEPS: usize = 50;
 
-/// A step of the history, with the project on its other side: before a step that can be undone, after a
-/// step that can be redone.
+/// A step of the history with a snapshot of the project: of the state before the step if the step can be
+/// undone, of the state after the step if it can be redone.
 #[derive(Clone, Debug)]
 pub struct HistoryStep {
     /// Number of the step, unique in the session.
@@ -90,7 +90,7 @@ impl History {
         self.future.last().map(|step| &*step.label)
     }
 
-    /// The last steps that can be undone, the newest first: as many as are restored after a crash.
+    /// The newest steps that can be undone, the newest first: as many as are restored after a crash.
     pub fn to_keep(&self) -> Vec<HistoryStep> {
         self.past
             .iter()

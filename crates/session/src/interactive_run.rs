@@ -48,7 +48,7 @@ fn vertex_spot(vertex: u32) -> Spot {
     })
 }
 
-/// Action of a hand on a garment: the vertex held, and place (m) and force (N) of the pull; none to let go.
+/// Action of a hand on a garment: the vertex held, and place (m) and force (N) of the pull; `None` to let go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HandInput {
     vertex: u32,
@@ -56,7 +56,7 @@ struct HandInput {
 }
 
 impl HandInput {
-    /// Reads an action; none if a garment does not take it.
+    /// Reads an action; `None` if a garment does not take such an action.
     fn of(action: &Action) -> Option<Self> {
         let (spot, pull) = match action {
             Action::Pull { spot, to, force } => (spot, Some((*to, *force))),
@@ -160,7 +160,8 @@ pub(crate) fn read_inputs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Inpu
 pub(crate) struct InteractiveRun {
     job: GarmentJob,
     run: GarmentRun,
-    /// Number of a level, and the map from its mesh to the mesh of the garment.
+    /// Number of a coarse mesh level, and the map from its mesh to the mesh of the garment; kept for the next
+    /// frame.
     carry: Option<(usize, Carry)>,
     /// Place (m) and force (N) of the pull on each held vertex.
     held: BTreeMap<u32, (Vec3, f64)>,
@@ -172,7 +173,7 @@ pub(crate) struct InteractiveRun {
 }
 
 impl InteractiveRun {
-    /// Prepares the first step.
+    /// A run before its first step.
     pub fn new(job: GarmentJob) -> Result<Self, DrapeError> {
         Ok(Self {
             run: GarmentRun::new(job.setup.clone())?,
@@ -185,7 +186,7 @@ impl InteractiveRun {
         })
     }
 
-    /// Queues an action for after `step` steps; for the next step if that is past or none.
+    /// Queues an action to be applied after `step` steps; before the next step if `step` is past or `None`.
     pub fn give(&mut self, action: Action, step: Option<u64>) {
         let step = step.unwrap_or(0).max(self.steps);
         self.waiting.entry(step).or_default().push(action);
@@ -224,7 +225,7 @@ impl InteractiveRun {
         Ok(self.run.progress())
     }
 
-    /// The inputs applied so far.
+    /// The inputs applied so far, each with its step.
     pub fn applied(&self) -> &[Input] {
         &self.applied
     }

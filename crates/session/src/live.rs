@@ -40,7 +40,7 @@ pub struct LiveFrame {
     pub gap: f64,
     /// Steps taken in all.
     pub step: usize,
-    /// Share of the way done, 0..=1; only an edit makes it fall.
+    /// Share of the drape that is done, 0..=1; only an edit makes it fall.
     pub share: f64,
 }
 
@@ -152,10 +152,10 @@ impl LiveRun {
         Ok(())
     }
 
-    /// Applies an edit of the pattern to the garment where it hangs, as soon as the seams of its finest
-    /// mesh are closed. `edit` starts from the garment given last: at the start of the run, or with the
-    /// edit before. An edit that still waits is replaced. Hands stay on the cloth unless it is meshed
-    /// anew. A garment that stands still goes on.
+    /// Applies an edit of the pattern to the garment where it hangs, as soon as the seams of its finest mesh
+    /// are closed. `edit` must be made from the newest garment that this run was given: by
+    /// [`LiveRun::start`], or by the edit before. An edit that still waits is replaced. Hands stay on the
+    /// cloth unless it is meshed anew. A garment that stands still goes on.
     ///
     /// A garment that comes to rest after an edit is no [`LiveRun::result`]: friction and folds remember the
     /// shapes before, so it hangs a little otherwise than a drape of the pattern from the start.
@@ -214,8 +214,8 @@ impl LiveRun {
         lock(&self.shared.outcome).as_ref()?.as_ref().err().cloned()
     }
 
-    /// The draped garment, once it hangs at rest; nothing before, nothing of a run that was stopped or
-    /// failed, and nothing after an edit that changed it.
+    /// The draped garment once it hangs at rest. `None` before, for a run that was stopped or failed, and
+    /// after an edit that changed the garment.
     pub fn result(&self) -> Option<DrapeResult> {
         lock(&self.shared.outcome).as_ref()?.as_ref().ok().cloned()
     }
@@ -225,7 +225,7 @@ impl LiveRun {
         lock(&self.shared.warnings).clone()
     }
 
-    /// The verdict on a garment that rests, also after an edit; none while it moves.
+    /// The verdict on a garment that rests, also after an edit; `None` while it moves.
     pub fn verdict(&self) -> Option<Verdict> {
         lock(&self.shared.verdict).clone()
     }
@@ -243,18 +243,19 @@ impl Drop for LiveRun {
 
 /// The next task of the thread.
 enum NextTask {
-    /// A step.
+    /// Take a step.
     Step,
-    /// An edit.
+    /// Apply an edit of the pattern.
     Edit(Box<GarmentEdit>),
     /// Report on a garment that has come to rest.
     Report,
-    /// Stop.
+    /// End the thread.
     End,
 }
 
 impl Shared {
-    /// Wakes the thread for something new; after the end nothing happens.
+    /// Wakes the thread for a new order and discards the earlier result; does nothing once the thread has
+    /// ended.
     fn begin_again(&self, orders: &Orders) {
         if !orders.ended {
             *lock(&self.outcome) = None;
@@ -335,7 +336,7 @@ struct RestReport {
     verdict: Verdict,
 }
 
-/// Runs until it is stopped.
+/// Work of the thread: runs the drape until the run is stopped.
 fn run(shared: &Shared, mut job: Arc<GarmentJob>) -> Result<(), DrapeError> {
     let start = Instant::now();
     let mut run = InteractiveRun::new((*job).clone())?;

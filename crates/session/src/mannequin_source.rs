@@ -45,7 +45,7 @@ impl MannequinSource {
 }
 
 impl Project {
-    /// Whether another project is worn by the very same body.
+    /// Whether this project and `other` have the very same body.
     pub fn has_same_body(&self, other: &Self) -> bool {
         MannequinSource::of(self) == MannequinSource::of(other)
     }

@@ -116,7 +116,7 @@ fn all_same<'a, T: 'a>(
     a.len() == b.len() && a.zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
 }
 
-/// Whether two patterns differ in their markers at most.
+/// Whether two patterns are equal apart from their markers.
 fn drafts_alike(a: &Arc<Pattern>, b: &Arc<Pattern>) -> bool {
     Arc::ptr_eq(a, b)
         || (a.name == b.name

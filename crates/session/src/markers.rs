@@ -33,7 +33,7 @@ pub struct MarkerSearch {
 pub struct FoundMarker {
     marker: Arc<Marker>,
     pieces: Arc<MarkerPieces>,
-    /// Placements of the pieces, and the marker in a few numbers.
+    /// Placements of the pieces, and a summary of the marker.
     pub found: Found,
 }
 
@@ -66,7 +66,7 @@ impl Session {
     /// A marker of the document with its pieces where they lie now, also while a gesture is shown.
     ///
     /// # Errors
-    /// The marker or its fabric is not there; nothing is cut from it; a piece cannot be cut.
+    /// The marker or its fabric does not exist; no piece is cut from the fabric; a piece cannot be cut.
     pub fn marker(&mut self, id: MarkerId) -> Result<DocumentMarker, SessionError> {
         self.marker_on_roll(id, 0)
     }
@@ -98,9 +98,8 @@ impl Session {
         Ok(MarkerSearch { marker, pieces })
     }
 
-    /// Adopts the result of a search as one step of the history and one command of the journal. If the
-    /// marker or its pieces have changed since, the result comes too late and is dropped; none is
-    /// returned then.
+    /// Adopts the result of a search as one step of the history and one command of the journal. If the marker
+    /// or its pieces have changed since the search began, the result is discarded, and `None` is returned.
     ///
     /// # Errors
     /// The edits cannot be made.
@@ -151,7 +150,7 @@ impl Session {
 }
 
 /// Note on a marker that cuts only named sizes while the garment is drafted to a wearer, or that cuts the
-/// wearer's size while the garment is drafted to a named one. The words go on from the name of the marker.
+/// wearer's size while the garment is drafted to a named size. The words continue after the marker's name.
 pub fn other_sizes_words(project: &Project, marker: &Marker) -> Option<String> {
     let pattern = &project.pattern;
     let cuts_wearers = marker.order.iter().any(|ordered| ordered.size.is_none());
@@ -179,7 +178,7 @@ pub fn other_sizes_words(project: &Project, marker: &Marker) -> Option<String> {
     ))
 }
 
-/// Words for the fabric or width that a marker keeps; they go on from the name of the marker.
+/// Words for the fabric or width that a marker keeps; they continue a sentence after the marker's name.
 pub fn kept_words(pattern: &Pattern, keeps: &MarkerKeeps) -> String {
     let shown = |metres: f64| Shown(pattern.unit).length(metres);
     match keeps {

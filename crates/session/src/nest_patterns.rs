@@ -100,7 +100,7 @@ pub(crate) fn drafts_of(
     })
 }
 
-/// A name that is not taken yet: the second of several patterns of one name is number 2.
+/// A name that is not taken yet: a second pattern of the same name gets the number 2.
 fn another(name: &str, known: &[String]) -> String {
     let mut number = 1;
     let mut own = name.to_owned();
@@ -111,7 +111,7 @@ fn another(name: &str, known: &[String]) -> String {
     own
 }
 
-/// Label that tells pieces of one pattern and size from those of others, if there are several.
+/// Label on the pieces of one pattern and size, if several patterns or sizes are laid together.
 fn label_of(pattern: Option<&str>, size: Option<&str>) -> Option<String> {
     let parts: Vec<&str> = pattern.into_iter().chain(size).collect();
     (!parts.is_empty()).then(|| parts.join(" "))

@@ -219,8 +219,8 @@ fn looks_like_garmentcode(text: &str) -> bool {
 }
 
 /// Reads a table of body measurements: native JSON, GarmentCode YAML, Seamly, Valentina or
-/// FreeSewing; of a table for several sizes the one chosen. Also returns notes on the size taken
-/// and on parts that were left out.
+/// FreeSewing. A table for several sizes is read in the chosen size. Also returns notes on the size
+/// taken and on parts that were left out.
 ///
 /// # Errors
 /// The file cannot be read, is not such a table, or does not have the size.

@@ -30,9 +30,9 @@ struct Moment {
 
 /// Simulated time over which the processor time of a second is measured (s).
 const SPAN: f64 = 1.0;
-/// Share of the duration over which the present speed is measured.
+/// Share of the scene's duration over which the present speed is measured (1).
 const RECENT: f64 = 0.1;
-/// Most moments kept in a span; closer ones tell no more.
+/// Largest number of moments kept in a span; closer ones tell no more.
 const MAX_MOMENTS: f64 = 1000.0;
 /// Time of a simulated second over that of the fastest one, above which the slow-down is reported (1).
 const SLOW: f64 = 2.0;

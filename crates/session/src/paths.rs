@@ -23,7 +23,7 @@ pub(crate) fn resolved(path: &Path) -> PathBuf {
     }
 }
 
-/// Relative path from a folder to a file; none if they have no common root.
+/// Relative path from a folder to a file; `None` if they have no common root.
 pub(crate) fn relative(file: &Path, folder: &Path) -> Option<PathBuf> {
     let parts = |path: &Path| {
         path.components()

@@ -100,7 +100,7 @@ impl Session {
             step(&mut self.history, &self.project).ok_or(SessionError::Nothing { action, hint })?;
         // The file of the pattern is not part of the history.
         next.source = self.project.source.clone();
-        // Ids are never given twice, not even those of what was undone.
+        // An id is never given twice, not even if the part that it was given to was undone.
         let given = self.project.pattern.ids;
         let mut ids = next.pattern.ids;
         ids.next = ids.next.max(given.next);
@@ -283,7 +283,7 @@ impl Session {
         let text =
             write_mannequin(&description_of(&self.project)).map_err(cannot("the mannequin"))?;
         write_atomically(path, text.as_bytes())?;
-        // The file of an edited body is no step of the history, like that of a pattern.
+        // Like the file of a pattern, the file of an edited body is not part of the history.
         if let BodyChoice::Shaped {
             path: kept @ None, ..
         } = &mut self.project.body

@@ -10,7 +10,7 @@ use toile_pattern::{
     PieceEdge, Pressed,
 };
 
-/// A piece: places are in its own plane, seen from the right side of the cloth.
+/// A piece in numbers. Positions are in the plane of the piece, seen from the right side of the cloth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PieceFacts {
     /// Name of the piece; no other has it.
@@ -25,11 +25,11 @@ pub struct PieceFacts {
     pub fabric: String,
     /// Direction of the warp, counter-clockwise from +x (deg).
     pub grain_deg: f64,
-    /// Whether it was unfolded.
+    /// Whether the piece was unfolded from a folded panel.
     pub folded: bool,
-    /// The lines it is sewn along.
+    /// Region within the sewing lines.
     pub sewn: RegionFacts,
-    /// The lines it is cut along.
+    /// Region within the cut lines.
     pub cut: RegionFacts,
     /// The edges of the outline, then those of holes.
     pub edges: Vec<EdgeFacts>,
@@ -42,7 +42,7 @@ pub struct PieceFacts {
 /// A region of cloth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RegionFacts {
-    /// Area without holes (cm2).
+    /// Area, holes taken out (cm2).
     pub area_cm2: f64,
     /// Least and greatest x and y (mm).
     pub bounds_mm: [[f64; 2]; 2],
@@ -72,7 +72,7 @@ pub struct NotchFacts {
     pub name: String,
     /// Name of the edge that the notch is on.
     pub edge: String,
-    /// Half of a folded panel.
+    /// Half of a folded panel that the notch is on, as in [`EdgeFacts::half`].
     pub half: u8,
     /// Kind: slit, v, castle, t or check.
     pub kind: &'static str,
@@ -89,13 +89,13 @@ pub struct NotchFacts {
 pub struct DartFacts {
     /// Name of the dart.
     pub name: String,
-    /// Half of a folded panel.
+    /// Half of a folded panel that the dart is on, as in [`EdgeFacts::half`].
     pub half: u8,
     /// Width straight across the mouth, or across the widest place of a diamond dart (mm).
     pub width_mm: f64,
     /// Lengths of the legs in the order of the outline; all four of a diamond dart (mm).
     pub legs_mm: Vec<f64>,
-    /// The leg it is pressed towards: before or after the apex as drawn.
+    /// The leg that the dart is pressed towards: before or after the apex as drawn.
     pub pressed: &'static str,
 }
 
@@ -119,11 +119,11 @@ pub struct JointFacts {
     pub end: &'static str,
     /// Names of the edges, or of the operations that made them: on the first side, on the second.
     pub edges: [String; 2],
-    /// Names of their pieces.
+    /// Names of the pieces that the two edges belong to.
     pub pieces: [String; 2],
     /// Angle by which the outline turns across the seam: above 0 a peak, below 0 a dip (deg).
     pub kink_deg: f64,
-    /// Length by which the first piece reaches beyond the second at that end (mm).
+    /// Length by which the first piece reaches beyond the second at that end of the seam (mm).
     pub step_mm: f64,
 }
 

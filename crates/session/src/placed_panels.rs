@@ -17,7 +17,7 @@ pub enum PanelOrigin {
     Automatic,
     /// The floor between the feet, as in Toile.
     Floor,
-    /// The middle of the waist.
+    /// The centre of the body at the height of the waist.
     Waist,
     /// The pelvis of the body model SMPL, as its authors' garments are placed.
     Pelvis,
@@ -29,7 +29,7 @@ pub enum PanelOrigin {
 const WAIST: f64 = 1.05;
 /// Height of the origin of SMPL's average body, which its authors call the pelvis, above the floor (m).
 const PELVIS: f64 = 1.12;
-/// Height below which a panel is no hem that touches the floor (m).
+/// Height below which a panel reaches through the floor (m); the hem of a long garment may touch the floor.
 const BELOW_FLOOR: f64 = -0.05;
 /// Least height above the floor of the middle of a panel of a head, an arm or a trunk (m): a child of one
 /// year is 75 cm tall.
@@ -52,7 +52,7 @@ struct Raise {
 }
 
 impl PanelOrigin {
-    /// Height of the origin above the floor (m); none if it is to be detected.
+    /// Height of the origin above the floor (m); `None` if it is to be detected.
     fn height(self) -> Option<f64> {
         match self {
             Self::Automatic => None,
@@ -109,7 +109,7 @@ fn placed_pieces(draft: &Draft) -> impl Iterator<Item = (usize, &Piece, Vec<Vec3
     })
 }
 
-/// Start and midpoint of a curve of a piece that is placed in space (m); none for another piece.
+/// Start and midpoint of a curve of a piece that is placed in space (m); empty for other pieces.
 fn points_in_space(piece: &Piece, curve: &Curve) -> Vec<Vec3> {
     let Worn::Placed(place) = piece.worn else {
         return Vec::new();
@@ -190,7 +190,7 @@ pub(crate) fn sleeve_angle(pattern: &Pattern) -> Option<f64> {
         let part = draft.pieces.get(k).and_then(body_part_by_name);
         matches!(part, Some(BodyPart::LeftArm | BodyPart::RightArm))
     };
-    // Edges sewn to another part, and edges sewn to nothing, as sums of points with their counts.
+    // Edges sewn to another part, and edges that are not sewn, as sums of points with their counts.
     let [mut armhole, mut free] = [(Vec3::zeros(), 0.0); 2];
     for (k, piece, _) in placed_pieces(&draft).filter(|row| is_sleeve(row.0)) {
         for (e, edge) in piece.outline.iter().enumerate() {

@@ -30,15 +30,15 @@ use toile_pattern::{DisplayUnit, Draft, Pattern, SizeSelection};
 /// Gap between pieces on paper, and margin to the edge of the drawing (m).
 const GAP: f64 = 0.004;
 const EDGE: f64 = 0.003;
-/// Share of a print that is done when its pieces are arranged.
+/// Progress of a print when its pieces are arranged (1).
 const ARRANGED: f64 = 0.95;
 /// Evaluations in the search for each arrangement: a second or so.
 const EVALUATIONS: u64 = 500_000;
-/// Number of rows of sheets that are tried beyond those needed.
+/// Number of rows of sheets beyond the rows needed that are also tried.
 const MORE_ROWS: u32 = 3;
 /// Area of the drawing on one page over the area of its pieces (1): about what nesting reaches.
 const ROOMY: f64 = 1.3;
-/// Most sheets of a print: nobody joins more, so that larger paper or a smaller scale is meant.
+/// Largest number of sheets of a print: nobody joins more, so that larger paper or a smaller scale is meant.
 const MAX_SHEETS: usize = 500;
 /// Scales that can be printed: from a doll's to twice the size.
 const SCALES: [f64; 2] = [0.01, 2.0];
@@ -46,9 +46,9 @@ const SCALES: [f64; 2] = [0.01, 2.0];
 /// Options of a print.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintOptions {
-    /// The sizes.
+    /// Sizes to print.
     pub sizes: SizeSelection,
-    /// Names of the pieces to print; all if there is none.
+    /// Names of the pieces to print; all if the list is empty.
     pub pieces: Vec<String>,
     /// Lines to draw: cut lines, sewing lines or both.
     pub lines: Lines,
@@ -56,7 +56,7 @@ pub struct PrintOptions {
     pub scale: f64,
     /// Paper to print on.
     pub paper: Paper,
-    /// Whether pieces that are symmetric in their fold are halved.
+    /// Whether only half is drawn of pieces that are symmetric in their fold.
     pub halves: bool,
     /// Shrinkage of the cloth in the wash, for which pieces are drawn larger.
     pub shrinkage: Shrinkage,
@@ -136,7 +136,7 @@ fn unprintable(error: FormatError) -> SessionError {
 /// Arranges the pieces of a pattern on paper; also returns facts about the print.
 ///
 /// # Errors
-/// As [`print_pattern`], but for the file.
+/// As [`print_pattern`], apart from the errors of the file.
 pub fn print_job(
     project: &Project,
     options: &PrintOptions,
@@ -152,7 +152,7 @@ pub fn print_job(
         .map(|size| cut_pieces(pattern, size, options))
         .collect::<Result<Vec<_>, _>>()?;
     let layers: Vec<PrintLayer> = sizes.iter().map(|size| size.layer()).collect();
-    // A print of named sizes is not made to measure.
+    // A print of named sizes is not made to the measurements of the wearer.
     let made_for = project
         .made_for()
         .filter(|_| sizes.iter().all(|size| size.name.is_none()));
@@ -256,7 +256,7 @@ fn drafted(project: &Project, sizes: &SizeSelection) -> Result<Vec<SizeDraft>, S
     each.collect()
 }
 
-/// Refuses unknown pieces; they are asked for by the names of their panels.
+/// Refuses unknown pieces; pieces are named by their panels.
 fn check_pieces(pattern: &Pattern, pieces: &[String]) -> Result<(), SessionError> {
     for name in pieces {
         if pattern.panel_named(name).is_none() {
@@ -271,7 +271,7 @@ fn check_pieces(pattern: &Pattern, pieces: &[String]) -> Result<(), SessionError
     Ok(())
 }
 
-/// A piece, and the whole or half of it that is printed.
+/// A cut piece, and the part of it that is printed: the whole piece or half of it.
 struct Cut {
     whole: CutPiece,
     printed: Arc<CutPiece>,
@@ -442,7 +442,8 @@ fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, Sessio
         }
     };
     if let Some(step) = job.paper.step() {
-        // A check by area, long before sheets are counted: few sheets within a piece have no line.
+        // A check by area, before the sheets are counted one by one: few sheets that lie within a piece have
+        // no line.
         let area: f64 = outlines.iter().map(Polygon::area).sum();
         let sheets = (area / (step.x * step.y)) as usize;
         if sheets > 10 * MAX_SHEETS {

@@ -6,7 +6,7 @@ use std::ops::Range;
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{GlbMesh, GlbPrimitive, GlbScene, ObjGroup, ObjMesh};
 
-/// The range of merged triangles of each panel.
+/// For each panel, the range of its triangles in the merged mesh.
 fn panel_triangles(drape: &Drape) -> Vec<Range<usize>> {
     let mut first = 0;
     drape
@@ -25,7 +25,8 @@ fn panel_triangles(drape: &Drape) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// One mesh for each garment worn, with a primitive for each panel. UVs are the piece's plane (m).
+/// One mesh for each garment worn, with a primitive for each panel. UVs are positions in the plane of the
+/// piece (m).
 pub(crate) fn garment_glb(drape: &Drape) -> GlbScene {
     let runs = panel_triangles(drape);
     let normals = drape.normals();
@@ -71,8 +72,8 @@ fn primitive(drape: &Drape, panel: usize, run: Range<usize>, normals: &[Vec3]) -
     }
 }
 
-/// The garment as one welded mesh with a group for each panel; texture coordinates are the
-/// pieces' planes (m).
+/// The garment as one welded mesh with a group for each panel; texture coordinates are positions in the
+/// planes of the pieces (m).
 pub(crate) fn garment_obj(drape: &Drape) -> ObjMesh {
     let garment = &drape.job.garment;
     let apart: Vec<[u32; 3]> = drape
@@ -109,13 +110,13 @@ pub(crate) fn body_obj(skin: &TriangleMesh) -> ObjMesh {
 }
 
 impl Drape {
-    /// The triangles of the draped mesh that belong to a part.
+    /// The range of triangles of the draped mesh that belong to one of the garments worn.
     pub fn part_triangles(&self, part: &GarmentPart) -> Range<usize> {
         let bound = |at: usize| self.origin.partition_point(|&t| (t as usize) < at);
         bound(part.triangles.start)..bound(part.triangles.end)
     }
 
-    /// Mesh of a part by itself.
+    /// Mesh of one of the garments worn, by itself.
     pub fn part_mesh(&self, part: &GarmentPart) -> TriangleMesh {
         let mut number = vec![u32::MAX; self.mesh.positions.len()];
         let mut mesh = TriangleMesh::default();
@@ -133,7 +134,8 @@ impl Drape {
         mesh
     }
 
-    /// Each of several garments as a file of its own: `layer-1-shirt.obj`, innermost first.
+    /// One file for each garment if several are worn: `layer-1-shirt.obj`, innermost first. Empty for a
+    /// single garment.
     pub fn part_files(&self) -> Vec<(String, ObjMesh)> {
         let mut parts: Vec<&GarmentPart> = self.job.parts.iter().collect();
         if parts.len() < 2 {

@@ -30,15 +30,15 @@ use toile_pattern::{Diagnostic, Edit, EditError, GarmentCloth, Pattern, Severity
 pub struct Project {
     /// The pattern.
     pub pattern: Arc<Pattern>,
-    /// The file it was read from or last saved to.
+    /// The file that the pattern was read from or last saved to.
     pub source: Option<PathBuf>,
     /// Body that the garment is draped on.
     pub body: BodyChoice,
-    /// Name of a size of the pattern; none means the base size, or the measured body.
+    /// Name of a size of the pattern; `None` means the base size, or the measured body.
     pub size: Option<String>,
-    /// A fabric that takes the place of the fabric of every panel.
+    /// A fabric that replaces the fabric of every panel.
     pub fabric: Option<FabricChoice>,
-    /// Width of the fabric (m); none means the fabric's own.
+    /// Width of the fabric (m); `None` means the fabric's own width.
     pub width: Option<f64>,
     /// Quality of mesh and drape.
     pub quality: Quality,
@@ -48,19 +48,19 @@ pub struct Project {
     pub others: Vec<WornGarment>,
 }
 
-/// A garment worn with that of the project's pattern, made in the same size, fabric and quality.
+/// A garment worn with the project's own garment, made in the same size, fabric and quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WornGarment {
-    /// Pattern of the garment; none if it could not be read when the pattern that names it was opened.
+    /// Pattern of the garment; `None` if it could not be read when the pattern that names it was opened.
     pub pattern: Option<Arc<Pattern>>,
-    /// The file it was read from.
+    /// The file that the garment's pattern was read from.
     pub source: PathBuf,
     /// Layer of the garment.
     pub layer: u16,
 }
 
 impl WornGarment {
-    /// The name of its pattern, or of the file that could not be read.
+    /// Name of the garment's pattern, or of the file that could not be read.
     pub fn name(&self) -> String {
         match &self.pattern {
             Some(pattern) => pattern.name.clone(),
@@ -70,7 +70,7 @@ impl WornGarment {
 }
 
 impl Project {
-    /// Whether files of the two projects would say the same.
+    /// Whether the files of the two projects would have the same content.
     pub fn says_the_same(&self, other: &Self) -> bool {
         let same_pattern = Arc::ptr_eq(&self.pattern, &other.pattern)
             || self.pattern.says_the_same(&other.pattern);
@@ -98,7 +98,7 @@ impl Project {
         plain.says_the_same(self)
     }
 
-    /// The project with edits made in its pattern, all or none.
+    /// The project with all `edits` made in its pattern; if one is refused, none is made.
     pub(crate) fn edited(&self, edits: &[Edit]) -> Result<Self, EditError> {
         let mut pattern = (*self.pattern).clone();
         pattern.apply(edits)?;
@@ -106,8 +106,8 @@ impl Project {
             pattern: Arc::new(pattern),
             ..self.clone()
         };
-        // A choice follows its size or fabric when that is renamed; the choice of one that is gone is
-        // dropped.
+        // When a size or fabric is renamed, the choice of it follows; when it is removed, the choice is given
+        // up.
         let (before, after) = (&self.pattern, &next.pattern);
         next.size = self.size.as_ref().and_then(|name| {
             let id = before.size_named(name)?.id;
@@ -133,7 +133,7 @@ impl Project {
         Ok(next)
     }
 
-    /// Fabric and width that the whole garment is cut from. A fabric that is missing is passed over.
+    /// Fabric and width that the whole garment is cut from. A chosen fabric that is missing is ignored.
     pub fn garment_cloth(&self) -> GarmentCloth {
         let fabric = self.fabric.as_ref().and_then(|f| f.fabric(&self.pattern));
         GarmentCloth {
@@ -156,7 +156,7 @@ impl Project {
         }
     }
 
-    /// Name of the size the pattern is drafted to, if it is one of its own.
+    /// Name of the size that the pattern is drafted to, if it is one of the pattern's own sizes.
     pub fn size_name(&self) -> Option<&str> {
         match (&self.size, &self.body) {
             (Some(size), _) => Some(size),
@@ -175,7 +175,8 @@ impl Project {
     }
 
     /// Name of the wearer that the garment is made to measure for, and the girths of bust, waist and hips;
-    /// none if it is drafted to a size of the pattern, as drawn, or to a figure that nobody was measured for.
+    /// `None` if the garment is drafted to a size of the pattern, as drawn, or to a figure that nobody was
+    /// measured for.
     pub fn made_for(&self) -> Option<[String; 2]> {
         let is_measured = matches!(
             self.body,
@@ -196,7 +197,7 @@ impl Project {
         ])
     }
 
-    /// Size or wearer of pieces that are drafted as for the garment, in words to write on a piece.
+    /// Size or wearer that the pieces are drafted to, in words to write on a piece.
     pub fn whose(&self) -> String {
         match self.size_name() {
             Some(size) => size.to_owned(),
@@ -209,7 +210,7 @@ impl Project {
     }
 
     /// Size of the garment, or the wearer that it is made for (with girths, if measured), in words for a
-    /// title; none if the pattern has no sizes and nobody was measured.
+    /// title; `None` if the pattern has no sizes and nobody was measured.
     pub(crate) fn made_words(&self) -> Option<String> {
         if let Some(size) = self.size_name() {
             return Some(format!("size {size}"));
@@ -339,8 +340,8 @@ impl Project {
         )
     }
 
-    /// Wearer that a pattern worn with the project's is drafted for: the named size of its own table,
-    /// else the wearer of the project.
+    /// Wearer that `pattern`, which is worn with the project's own garment, is drafted for: the named size of
+    /// its own table, else the wearer of the project.
     pub(crate) fn drafted_for(&self, pattern: &Pattern) -> Wearer {
         let named = self
             .size

@@ -9,7 +9,7 @@ use toile_pattern::{BodyPart, Draft, Facing, Worn};
 pub(crate) struct PutOn {
     /// The garments as they are to be placed.
     pub parts: Arc<Vec<DraftedPart>>,
-    /// Whether garments that would hang from the waist hang from the chest.
+    /// Whether garments that would otherwise hang from the waist are hung from the chest.
     pub hangs_from_chest: bool,
 }
 
@@ -22,8 +22,8 @@ impl PutOn {
         }
     }
 
-    /// Another way of putting the garments on, with words for the first way and for this one. If there is
-    /// none, the error is the words for the first way.
+    /// Another way of putting the garments on, with words for the first way and for this one. If there is no
+    /// other way, the error is the words for the first way.
     pub fn otherwise(parts: &[DraftedPart]) -> Result<(Self, [&'static str; 2]), String> {
         let any = |is: fn(&Worn) -> bool| {
             let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
@@ -75,7 +75,7 @@ impl PutOn {
     }
 
     /// Hangs garments from the chest instead of the waist; refused if all pieces are known to go round other
-    /// parts.
+    /// parts of the body than the trunk.
     fn from_chest(parts: &[DraftedPart]) -> Result<(Self, [&'static str; 2]), String> {
         let told = told_body_parts(parts);
         if !told.is_empty() && !told.contains(&BodyPart::Trunk) {
@@ -98,8 +98,9 @@ impl PutOn {
     }
 }
 
-/// The body parts that sewn pieces go round, as the patterns or the names of the pieces tell, in the order of
-/// the pieces; others go where their neighbours do, or else round the trunk.
+/// The body parts that sewn pieces go round, as far as the patterns or the names of the pieces tell, in the
+/// order of the pieces. Pieces without an entry go round the part that their neighbours go round, or else the
+/// trunk.
 fn told_body_parts(parts: &[DraftedPart]) -> Vec<BodyPart> {
     let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
     let mut told = Vec::new();
@@ -130,7 +131,7 @@ fn is_over(worn: &Worn) -> bool {
     matches!(worn, Worn::Wrapped { facing, .. } if *facing == Facing::Over)
 }
 
-/// Whether a piece on any part but an arm is given its level.
+/// Whether a piece that goes round any body part but an arm has a level of its own.
 fn has_level(worn: &Worn) -> bool {
     matches!(worn, Worn::Wrapped { part, level, .. }
         if level.is_some() && !matches!(part, BodyPart::LeftArm | BodyPart::RightArm))

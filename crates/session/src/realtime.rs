@@ -34,7 +34,7 @@ pub enum RealtimeKey {
     /// Run.
     #[strum(serialize = "right")]
     Run,
-    /// Switch to the other adjustment.
+    /// Switch between the two kinds of [`Adjustment`].
     #[strum(serialize = "g")]
     Switch,
 }
@@ -63,7 +63,7 @@ pub struct RealtimeSurface {
     pub colours: Vec<[f64; 3]>,
 }
 
-/// A skin that is blended from the motions of joints.
+/// A skin whose vertices are blended from the motions of several joints.
 struct Skin {
     rest: Vec<[f32; 3]>,
     shares: Vec<Vec<(u16, f32)>>,
@@ -85,8 +85,8 @@ pub struct RealtimeRun {
 /// Fade from one clip to the next (s): about a step.
 const FADE: f32 = 0.4;
 
-/// Distance of the innermost garment from the ellipsoids, and of each garment from the one below
-/// it (m): most of the skin lies within the ellipsoids, and not all.
+/// Distance of the innermost garment from the ellipsoids, and of each garment from the garment below it (m):
+/// most of the skin lies within the ellipsoids, but not all of it.
 const FIRST_OFFSET: f32 = 0.006;
 const NEXT_OFFSET: f32 = 0.008;
 
@@ -101,7 +101,7 @@ fn cannot(error: RealtimeError) -> SessionError {
     SessionError::Conflict(error.to_string())
 }
 
-/// The clips of our own that a character of the window has, by name.
+/// The program's own clips that a character of the window has, by name.
 pub(crate) fn own_clips(skeleton: &Skeleton) -> [(&'static str, Clip); 4] {
     [
         ("stand", Clip::stand(skeleton)),
@@ -120,8 +120,8 @@ pub fn woman_character() -> Result<Character, SessionError> {
     character_with(&body, None)
 }
 
-/// A body as a character with the clips of our own, and one more, which takes the place of one of
-/// the same name.
+/// A body as a character with the program's own clips and one more clip, `more`, which replaces an own clip
+/// of the same name.
 pub(crate) fn character_with(
     body: &Mannequin,
     more: Option<(&str, &Clip)>,
@@ -241,10 +241,10 @@ impl RealtimeRun {
         &self.garments
     }
 
-    /// Executes the command of a key.
+    /// Executes a command, as if its key were pressed.
     ///
     /// # Errors
-    /// A clip that is not there.
+    /// The character has no such clip.
     pub fn press(&mut self, key: RealtimeKey) -> Result<(), SessionError> {
         let clip = match key {
             RealtimeKey::Stand => "stand",
@@ -261,8 +261,8 @@ impl RealtimeRun {
         self.ellipsoids.start(clip, FADE).map_err(cannot)
     }
 
-    /// Computes one frame, `dt` after the last (s): ellipsoids, then every garment. The surfaces
-    /// shown stay as they were until [`RealtimeRun::show`].
+    /// Computes one frame, `dt` (s) after the last frame: first the ellipsoids, then every garment. The shown
+    /// surfaces change only with [`RealtimeRun::show`].
     pub fn frame(&mut self, dt: f32) {
         self.ellipsoids.advance(dt);
         for garment in &mut self.garments {
@@ -273,7 +273,7 @@ impl RealtimeRun {
         }
     }
 
-    /// Brings the surfaces shown up to the last frame.
+    /// Updates the shown surfaces to the last frame.
     pub fn show(&mut self) {
         let skin = &mut self.skin;
         skin.motions.clear();

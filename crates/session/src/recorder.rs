@@ -21,18 +21,19 @@ use toile_interchange::{
     FileError, FormatError, Frame, FrameHead, FrameSurface, FrameWriter, RestShape, read_frames,
 };
 
-/// A file of frames in the making. It is written in place: a run that is stopped leaves what it has recorded.
+/// A file of frames that is being written. It is written in place: a run that is stopped leaves the frames
+/// recorded so far.
 pub(crate) struct Recorder {
     path: PathBuf,
-    /// Bytes that are frames of this run.
+    /// Length of the part of the file that holds frames of this run (bytes).
     length: u64,
     section: Option<(Vec<FrameSurface>, FrameWriter)>,
-    /// The open file, from the first frame on.
+    /// The open file; `None` before the first frame.
     file: Option<File>,
 }
 
 impl Recorder {
-    /// A recorder that replaces whatever file is there.
+    /// A recorder that replaces a file of the same path.
     pub fn new(path: PathBuf) -> Self {
         Self {
             path,
@@ -42,7 +43,7 @@ impl Recorder {
         }
     }
 
-    /// A recorder that goes on after the first `length` bytes of its file, and drops the others.
+    /// A recorder that continues after the first `length` bytes of its file and cuts the rest off.
     ///
     /// # Errors
     /// The file cannot be read, or does not have these bytes.
@@ -137,7 +138,7 @@ impl Recorder {
     }
 }
 
-/// The surfaces of a state, and the positions of those that move, one after the other (m).
+/// The surfaces of a state, and the positions of the moving surfaces, one surface after the other (m).
 fn surfaces(
     run: &SceneRun,
     groups: &[(Vec<ObjectId>, String)],
@@ -180,11 +181,12 @@ fn surfaces(
     (surfaces, moving)
 }
 
-/// Bytes of a file's name beyond which a surface is named by its first object and the number of the others.
+/// Longest name of a surface's file (bytes); a longer one is replaced by the first object and the number of
+/// the other objects.
 const MAX_NAME_LENGTH: usize = 160;
 
-/// The surfaces that move: the objects that are sewn together in each, or will be, and the name of its file.
-/// Two surfaces of one name are refused.
+/// The surfaces that move: for each, the objects that are or will be sewn together in it, and the name of its
+/// file. Two surfaces of one name are refused.
 ///
 /// # Errors
 /// Two surfaces of one name.

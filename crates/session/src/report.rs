@@ -178,7 +178,7 @@ fn fabric_names(project: &Project, parts: &[DraftedPart]) -> Option<String> {
 }
 
 impl Report {
-    /// The report on a project, at first with its pieces and seams alone.
+    /// A report on a project that contains only its pieces and seams.
     pub fn new(project: &Project, parts: &[DraftedPart]) -> Self {
         let several = parts.len() > 1;
         let prefix = |part: &DraftedPart| match several {

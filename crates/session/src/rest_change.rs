@@ -1,12 +1,12 @@
 //! Kinds of change that an edit of the pattern makes to the cloth of a worn garment.
 
-/// Kind of change that an edit makes to the cloth of a worn garment, the least first.
+/// Kind of change that an edit makes to the cloth of a worn garment, from the smallest to the largest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RestChange {
-    /// Nothing: the draft is the same.
+    /// No change: the draft is the same.
     Nothing,
-    /// Rest shapes of its triangles.
+    /// Change of the rest shapes of the triangles.
     Shapes,
-    /// The mesh of its panels.
+    /// Change of the mesh of the panels.
     Mesh,
 }

@@ -46,11 +46,11 @@ pub struct SceneOutcome {
     pub verdict: Verdict,
 }
 
-/// Most frames that a scene may save: beyond this the frame step is surely a mistake.
+/// Largest number of frames that a scene may save: beyond this the frame step is surely a mistake.
 const MAX_FRAMES: f64 = 100_000.0;
 
-/// Runs a scene file and writes its frames, its last state and a report into a folder. A run that goes on
-/// from a checkpoint writes the bytes that one without interruption does, at any number of threads.
+/// Runs a scene file and writes its frames, its last state and a report into a folder. A run that continues
+/// from a checkpoint writes the same bytes as a run without interruption, at any number of threads.
 ///
 /// # Errors
 /// The scene, a file it names or the checkpoint cannot be read, the simulation fails, a file cannot be
@@ -123,7 +123,7 @@ pub fn run_scene(
     })
 }
 
-/// A run before its next step, with all that goes into a checkpoint of it.
+/// A run before its next step, with everything that a checkpoint of it contains.
 struct Begun {
     run: SceneRun,
     crossings: Crossings,
@@ -203,7 +203,7 @@ struct Kept {
 /// The course of a run from step to step.
 struct Course<'a> {
     scene: &'a Scene,
-    /// Whether the stretch of each triangle of cloth counts.
+    /// For each triangle of cloth, whether its stretch counts.
     counted: &'a [bool],
     place: Place,
     /// The surfaces that move, with the names of their files.
@@ -222,7 +222,7 @@ impl Course<'_> {
             self.place.clear()?;
             self.keep_landmark()?;
         }
-        // With contact of cloth with cloth checkpoints are taken at whole seconds alone: the last one is
+        // With contact of cloth with cloth checkpoints can only be taken at whole seconds: the last one is
         // kept.
         let mut kept = self.keep(None)?;
         while !self.begun.run.finished() {
@@ -261,7 +261,7 @@ impl Course<'_> {
         Ok(None)
     }
 
-    /// The newest checkpoint of a run that may be given up, taken once a simulated second.
+    /// The newest checkpoint of a run that may be given up; one is taken every simulated second.
     fn keep(&self, kept: Option<Kept>) -> Result<Option<Kept>, SessionError> {
         let run = &self.begun.run;
         let is_new = kept
@@ -273,7 +273,7 @@ impl Course<'_> {
         Ok(Some(self.begun.kept()?))
     }
 
-    /// Saves a checkpoint beside the frames, if the run is where one is to be kept.
+    /// Saves a checkpoint beside the frames, if the run is at a step at which one is to be kept.
     fn keep_landmark(&self) -> Result<(), SessionError> {
         let run = &self.begun.run;
         if self.begun.recorder.is_none() || !run.is_landmark() || !run.has_checkpoints() {
@@ -283,7 +283,7 @@ impl Course<'_> {
         saved.write(&self.place.checkpoints(), &Place::checkpoint(run.steps()))
     }
 
-    /// A checkpoint of the present state where one can be taken, else the one that was kept.
+    /// A checkpoint of the present state if one can be taken, else `kept`.
     fn newest_checkpoint(&self, kept: Option<Kept>) -> Result<Option<Kept>, SessionError> {
         let run = &self.begun.run;
         match run.steps_to_checkpoint() {
@@ -292,7 +292,7 @@ impl Course<'_> {
         }
     }
 
-    /// Writes the frame that is due.
+    /// Writes a frame if one is due.
     fn write_frame(&mut self) -> Result<(), SessionError> {
         let Begun {
             run,

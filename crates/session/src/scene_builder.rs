@@ -43,15 +43,15 @@ pub(crate) struct Builder<'a> {
     pub notes: Vec<String>,
     /// Stance of the mesh files: their axes and unit.
     stance: Stance,
-    /// Meshes of the files read, as they are there.
+    /// Meshes of the files read, by name, in the coordinates of their files.
     meshes: BTreeMap<String, TriangleMesh>,
     /// Bodies that wear garments, by the index of their object.
     pub(crate) figures: BTreeMap<usize, Arc<Mannequin>>,
     /// Garments that are worn, by the index of their object.
     pub(crate) garments: BTreeMap<usize, HungGarment>,
-    /// Whether the strain of each triangle of all cloths counts, as it does away from gathers.
+    /// For each triangle of all cloths, whether its strain counts in reports; it does not near gathers.
     pub counted: Vec<bool>,
-    /// Longest lead-in of a figure, the way into its clip before time 0 (s).
+    /// Longest lead-in of a figure, the motion into its clip before time 0 (s).
     pub(crate) lead_in: f64,
     /// Time at which the last figure has come to rest (s).
     pub(crate) ends: Option<f64>,
@@ -332,7 +332,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// The mesh of a file as it stands in the scene.
+    /// The mesh of a file, turned and scaled by the stance of the scene's meshes.
     fn mesh(&mut self, name: &str) -> Result<TriangleMesh, SessionError> {
         let stance = self.stance;
         let mut mesh = self.opened(name)?.clone();
@@ -342,7 +342,7 @@ impl<'a> Builder<'a> {
         Ok(mesh)
     }
 
-    /// The mesh of a file as it is; each file is read once.
+    /// The mesh of a file in its own coordinates; each file is read once.
     fn opened(&mut self, name: &str) -> Result<&TriangleMesh, SessionError> {
         let mesh = match self.meshes.remove(name) {
             Some(mesh) => mesh,
@@ -356,7 +356,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Stance of the scene's mesh files: as the scene says, else as detected on a person among its bodies.
-    /// The files are taken to come from one program, so that all are turned as the first person is.
+    /// All files are taken to come from one program: all are turned like the mesh of the first person.
     fn stance_of_meshes(&mut self) -> Result<Stance, SessionError> {
         let path = self.place.0;
         let asked = self
@@ -421,7 +421,7 @@ impl<'a> Builder<'a> {
         Ok(mannequin)
     }
 
-    /// A pattern's garment, sewn round the scene's first body, or the one its pattern is for.
+    /// A pattern's garment, sewn round the scene's first body, or else round the pattern's own body.
     fn garment(&self, pattern: &str, watcher: &mut dyn Watcher) -> Result<Cloth, SessionError> {
         let mut session = Session::new();
         let mut commands = vec![Command::OpenPattern {
@@ -449,7 +449,7 @@ impl<'a> Builder<'a> {
             session.execute(command, watcher)?;
         }
         let mut setup = session.garment_setup()?.setup;
-        // Only the sewing is wanted: the finest level alone.
+        // Only the sewing is needed, on the finest level.
         setup.levels.drain(..setup.levels.len() - 1);
         let mut cloth = setup.levels[0].cloth.clone();
         let mut run = GarmentRun::new(setup)?;

@@ -24,17 +24,17 @@ use toile_interchange::{
 /// Options of a run, in addition to the scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunOptions {
-    /// Simulated time between two checkpoints (s); none for no checkpoints.
+    /// Simulated time between two checkpoints (s); `None` for no checkpoints.
     pub checkpoint_step: Option<f64>,
-    /// Goes on from the checkpoint in the folder of the results.
+    /// Continues from the checkpoint in the folder of the results.
     pub resume: bool,
-    /// Goes on from this frame, counted from 0: from the newest checkpoint beside the frames that is not
-    /// after it.
+    /// Continues from this frame, counted from 0: from the newest checkpoint beside the frames that is not
+    /// later than the frame.
     pub restart: Option<usize>,
-    /// Processor time of a simulated second beyond which the run is ended with a checkpoint (s); none for no
-    /// limit.
+    /// Processor time of a simulated second beyond which the run is ended with a checkpoint (s); `None` for
+    /// no limit.
     pub give_up: Option<f64>,
-    /// The pictures painted.
+    /// Pictures to paint of the run.
     pub pictures: PictureOptions,
 }
 
@@ -99,14 +99,14 @@ impl Place {
 pub(crate) struct SavedRun {
     /// Counts over the frames written.
     pub frames: FrameCounts,
-    /// Bytes of the file of frames.
+    /// Length of the file of frames (bytes).
     pub frame_bytes: u64,
-    /// Crossings of cloth with cloth counted before the first step, most at one count, and at the last.
+    /// Crossings of cloth with cloth: before the first step, the most at one count, and at the last count.
     pub crossings: [usize; 3],
     /// Boxes that the objects have been in, if pictures are painted.
     #[serde(default, skip_serializing_if = "Ways::is_empty")]
     pub ways: Ways,
-    /// The run.
+    /// State of the run.
     pub run: SceneCheckpoint,
 }
 
@@ -118,7 +118,7 @@ impl SavedRun {
     /// Reads the checkpoint in the folder of the results.
     ///
     /// # Errors
-    /// There is none, or it cannot be read.
+    /// There is no checkpoint, or it cannot be read.
     pub fn read(folder: &Path) -> Result<Self, SessionError> {
         let path = folder.join(NAME);
         if !path.exists() {
@@ -131,10 +131,10 @@ impl SavedRun {
         read_checkpoint(&text).map_err(|error| SessionError::Format { path, error })
     }
 
-    /// Reads the newest checkpoint beside the frames that is not after a frame.
+    /// Reads the newest checkpoint beside the frames that is not later than a frame.
     ///
     /// # Errors
-    /// There is none, or it cannot be read.
+    /// There is no such checkpoint, or it cannot be read.
     pub fn before(place: &Place, frame: usize) -> Result<Self, SessionError> {
         for path in place.kept() {
             let text = read_text(&path)?;
@@ -169,7 +169,7 @@ pub(crate) struct CheckpointTimes {
 }
 
 impl CheckpointTimes {
-    /// Checkpoints at a step (s) of simulated time, counted from where the run stands.
+    /// Checkpoints at intervals of simulated time (s), counted from the present time of the run.
     ///
     /// # Errors
     /// A step that is not a positive time; a method of which no checkpoint can be taken.

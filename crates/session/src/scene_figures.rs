@@ -25,13 +25,13 @@ use toile_interchange::{FormatError, MotionFile, ObjectFile};
 
 /// Time that figures stand still at the end of a scene without a duration (s).
 const STANDS_STILL: f64 = 1.0;
-/// Longest substep of `xpbd` by default where garments are worn (s). One twice as long lengthens a waistband
-/// of poplin by a quarter, so that a skirt slides off; one half as long changes a stretch of 12 % by 2
-/// points.
+/// Longest default substep of `xpbd` where garments are worn (s). A substep twice as long lengthens a
+/// waistband of poplin by a quarter, so that a skirt slides off; one half as long changes a stretch of 12 %
+/// by 2 percentage points.
 const MAX_SUBSTEP: f64 = 1.0 / 2400.0;
-/// Longest course of a figure that is posed before its scene begins (s).
+/// Longest motion of a figure that is computed before its scene begins (s).
 const MAX_COURSE_DURATION: f64 = 600.0;
-/// Most rounds of a loop; more are surely a mistake.
+/// Largest number of rounds of a looped clip; more are surely a mistake.
 const MAX_STRIDES: f64 = 1000.0;
 
 impl Builder<'_> {
@@ -54,7 +54,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Refuses a garment whose wearer is no body, and fields that only a garment that is worn can have.
+    /// Refuses a garment whose wearer is no body, and fields that only a worn garment may have.
     fn check_worn(&self, index: usize, object: &ObjectFile) -> Result<(), SessionError> {
         let place = |field: &str| format!("objects[{index}].{field}");
         let Some(on) = &object.on else {
@@ -93,7 +93,8 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Contact as the file says; where garments are worn cloth keeps off cloth unless it says otherwise.
+    /// Contact as the file says. Unless it says otherwise, cloth also collides with cloth where garments are
+    /// worn.
     pub(crate) fn contact(&self) -> ContactSettings {
         let mut contact = self.file.contact();
         if self.file.collision.cloth_offset.is_none() && self.is_worn() {
@@ -102,7 +103,8 @@ impl Builder<'_> {
         contact
     }
 
-    /// The air as the file says; where garments are worn it is that of sea level unless it says otherwise.
+    /// The air as the file says. Unless it says otherwise, it has the density of air at sea level where
+    /// garments are worn.
     pub(crate) fn air(&self) -> Air {
         let air = self.file.air.air();
         match self.file.air.density {
@@ -114,8 +116,8 @@ impl Builder<'_> {
         }
     }
 
-    /// The method as the file says; where garments are worn the substeps of `xpbd` are short enough for tight
-    /// cloth unless it says otherwise.
+    /// The method as the file says. Unless it says otherwise, the substeps of `xpbd` are short enough for
+    /// tight cloth where garments are worn.
     ///
     /// # Errors
     /// An unknown method, settings out of range.
@@ -196,7 +198,7 @@ impl Builder<'_> {
         Ok(ObjectKind::tracked(SharedTrack::new(track)))
     }
 
-    /// The clip that a motion names: one of our own, or a file beside the scene.
+    /// The clip that a motion names: one of the program's own, or a file named from the scene's folder.
     fn clip(
         &mut self,
         index: usize,

@@ -22,8 +22,8 @@ pub(crate) enum Recorded {
 #[derive(Default)]
 pub(crate) struct RecordedCourse(Vec<(f64, Vec<Vec3>)>);
 
-/// Reads the recorded frames of an object; none if it names none. `cached` is the mesh that its point cache
-/// moves, with the stance of the scene's meshes.
+/// Reads the recorded frames of an object; `None` if the object names no frames. `cached` is the mesh that
+/// the object's point cache moves, with the stance of the scene's meshes.
 ///
 /// # Errors
 /// Frames that cannot be read or do not fit the object, and fields that need frames. `at` is the place of the
@@ -105,8 +105,8 @@ fn wrong(
     }
 }
 
-/// Reads the recording of an animated object: of the recorded object that it names, else of that with its own
-/// name, else of the only one that moves.
+/// Reads the recording of an animated object. The recorded object is the one that `object` names; else the
+/// one with its own name; else the only one that moves.
 ///
 /// # Errors
 /// Frames that cannot be read, an object that is not among them, or whose triangles change from frame to
@@ -194,7 +194,8 @@ fn cached_object(
     Ok(RecordedCourse(course.collect()).object(mesh.triangles))
 }
 
-/// A cloth that starts where it is in a frame, with its rest shape: the last frame unless one is named.
+/// A cloth that starts in the position of a recorded frame, with its rest shape: in the last frame unless one
+/// is named.
 ///
 /// # Errors
 /// Frames that cannot be read, a frame or an object that is not there, an object that is no cloth.

@@ -13,7 +13,7 @@ use toile_geometry::Duration;
 pub enum PictureTime {
     /// Before the first step.
     First,
-    /// After the last.
+    /// After the last step.
     Last,
     /// After the first step that reaches a simulated time (s).
     At(f64),
@@ -50,9 +50,9 @@ impl fmt::Display for PictureTime {
 /// The pictures asked of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PictureOptions {
-    /// The states shown; none for no pictures.
+    /// The states shown; empty for no pictures.
     pub times: Vec<PictureTime>,
-    /// The object that the camera follows; none for all that moves.
+    /// The object that the camera follows; `None` for all objects that move.
     pub of: Option<String>,
 }
 
@@ -67,7 +67,7 @@ struct Shown {
 
 /// The pictures of a run in the making.
 pub(crate) struct SceneAlbum {
-    /// The states to come.
+    /// The states that are still to be painted.
     times: Vec<PictureTime>,
     camera: RunCamera,
     shown: Vec<Shown>,
@@ -101,7 +101,7 @@ impl SceneAlbum {
         &self.camera.ways
     }
 
-    /// Goes on with a run that is resumed, and with the boxes that its objects have been in.
+    /// Continues with a run that is resumed, and with the boxes that its objects have been in.
     ///
     /// # Errors
     /// A picture of a time that has passed.
@@ -121,7 +121,7 @@ impl SceneAlbum {
         Ok(())
     }
 
-    /// Follows the objects, and keeps the state if a picture is due. To be called after each step.
+    /// Follows the objects, and keeps the state if a picture is due. Call it after each step.
     pub fn follow(&mut self, run: &SceneRun) {
         if self.times.is_empty() {
             return;
@@ -172,7 +172,7 @@ impl SceneAlbum {
     }
 }
 
-/// Refuses a time that the run does not come to.
+/// Refuses a time outside the run.
 fn check_time(time: PictureTime, run: &SceneRun) -> Result<(), SessionError> {
     let what = "the time of a picture [s]";
     let PictureTime::At(value) = time else {

@@ -38,10 +38,10 @@ pub struct Session {
     pub(crate) journal: Journal,
     pub(crate) derived: Derived,
     pub(crate) gesture: Option<Gesture>,
-    /// The project as it is in its file.
+    /// The project as it was last read from or saved to its file.
     pub(crate) saved: Project,
     pub(crate) timing: Timing,
-    /// The point that files place their panels round.
+    /// The point of the body that the panels of opened files are placed round.
     pub(crate) origin: PanelOrigin,
 }
 
@@ -97,7 +97,7 @@ impl Session {
         !self.saved.says_the_same(&self.project)
     }
 
-    /// Every value of the pattern in the project's size.
+    /// Evaluation of all values of the pattern in the project's size.
     pub fn evaluation(&mut self) -> Arc<Evaluation> {
         self.derived.evaluation(&self.project)
     }
@@ -112,8 +112,8 @@ impl Session {
         self.derived.diagnostics(&self.project)
     }
 
-    /// Everything found wrong with the pattern in the sizes asked for. Without any, in the size that was
-    /// chosen for the project, else in all, or as drafted to the body if one was chosen.
+    /// Everything found wrong with the pattern in the sizes asked for. Without `sizes`, in the size that was
+    /// chosen for the project, else in all sizes, or as drafted to the body if a body was chosen.
     ///
     /// # Errors
     /// A size that the pattern does not have.
@@ -136,7 +136,7 @@ impl Session {
     /// The garment ready to be sewn and draped.
     ///
     /// # Errors
-    /// A pattern or measurements nothing can be made from.
+    /// A pattern or measurements from which no garment can be made.
     pub fn garment_setup(&mut self) -> Result<GarmentJob, SessionError> {
         let job = self.derived.job(&self.project)?;
         Ok(GarmentJob {
@@ -155,9 +155,9 @@ impl Session {
         self.derived.drape.as_ref().map(|drape| drape.summary())
     }
 
-    /// Adopts a drape that ran live, as if it had been made by a command: it is recorded in the
-    /// journal, and exports from now on show it. The result of another revision comes too late and
-    /// is dropped; none is returned then.
+    /// Adopts a drape that ran live, as if it had been made by a command: it is recorded in the journal, and
+    /// later exports show it. The result is discarded, and `None` is returned, if it was made from another
+    /// revision of the project, or while a gesture is previewed.
     pub fn adopt_drape(&mut self, result: DrapeResult) -> Option<Vec<Event>> {
         if self.gesture.is_some() || result.revision() != self.revision {
             return None;
@@ -201,7 +201,8 @@ impl Session {
         Ok(events)
     }
 
-    /// The command in a form that can be done again: a pattern that came through a pipe is kept as a whole.
+    /// The command in a form that can be executed again: the content of a pattern that came through a pipe is
+    /// stored in it.
     fn lasting(&self, command: Command) -> Result<Command, SessionError> {
         if let Command::OpenPattern { path } = &command
             && is_pipe(path)
@@ -236,8 +237,8 @@ impl Session {
         Ok(events)
     }
 
-    /// Executes the commands of a journal in a new session, with all their output in one folder: the
-    /// same files with the same bytes, apart from `timing.json`.
+    /// Executes the commands of a journal in a new session and writes all their output into one folder. Apart
+    /// from `timing.json`, the files have the same bytes as those of the first execution.
     ///
     /// # Errors
     /// The error of the first command that was not done.

@@ -43,7 +43,7 @@ pub struct GarmentJob {
     pub seams: Arc<Vec<JobSeam>>,
     /// The garments worn together, the project's own first.
     pub parts: Arc<Vec<GarmentPart>>,
-    /// State of the garment that an edit of the pattern is compared with.
+    /// Sources of the garment, with which an edit of the pattern is compared.
     pub(crate) origin: Arc<JobOrigin>,
 }
 
@@ -142,9 +142,8 @@ pub(crate) fn job(
     }
 }
 
-/// Distance kept between cloth and cloth, in one layer and between two (m): half of the distance kept from
-/// the body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the cloth outside
-/// it.
+/// Distance kept between cloth and cloth, in one layer and between layers (m): half of the distance kept from
+/// the body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the next layer.
 pub(crate) const CLOTH_OFFSET: f64 = 2e-3;
 
 pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
@@ -163,13 +162,14 @@ pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
     }
 }
 
-/// The pieces as cloth: each triangle's rest shape is its place in the piece, turned so that the
-/// warp is the first axis.
+/// The pieces as cloth: each triangle's rest shape is its shape in the piece, turned so that the warp is the
+/// first axis.
 fn cloth(draft: &Draft, garment: &Garment) -> Cloth {
     let mut rest = vec![[Vec2::zeros(); 3]; garment.triangles.len()];
     let mut material_of = vec![0; garment.triangles.len()];
     let mut panel_of = vec![0; garment.triangles.len()];
-    // A fabric that no panel is cut from must not act: contact and sewing go by the materials listed.
+    // Materials of fabrics that no panel is cut from must be left out: contact and sewing use all materials
+    // listed.
     let mut fabrics: Vec<usize> = garment.panels.iter().map(|panel| panel.fabric).collect();
     fabrics.sort_unstable();
     fabrics.dedup();

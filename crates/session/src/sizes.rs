@@ -5,8 +5,8 @@ use crate::{Project, SessionError};
 use std::fmt;
 use toile_pattern::{Diagnostic, Evaluation, Pattern, SizeSelection};
 
-/// The sizes of a pattern that a selection means, each with its number of garments; no name stands
-/// for the pattern as drafted.
+/// The sizes of a pattern that a selection means, each with its number of garments; a size without a name
+/// stands for the pattern as drafted.
 ///
 /// # Errors
 /// All sizes of a pattern that has no table of sizes.
@@ -20,14 +20,14 @@ pub(crate) fn selected(
     })
 }
 
-/// A diagnostic, and the sizes it was found in.
+/// A diagnostic, and the sizes that it was found in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizedDiagnostic {
     /// The diagnostic, in the words of the first of these sizes.
     pub diagnostic: Diagnostic,
     /// Names of the sizes, in the order of the pattern's table; empty for a pattern without sizes.
     pub sizes: Vec<String>,
-    /// Whether it was found in every size that was checked.
+    /// Whether the diagnostic was found in every size that was checked.
     pub is_everywhere: bool,
 }
 
@@ -42,8 +42,8 @@ impl fmt::Display for SizedDiagnostic {
     }
 }
 
-/// The sizes that a project's pattern is checked in: the one that was chosen, else all; where a body
-/// was chosen and no size, as it is drafted to that body.
+/// The sizes that a project's pattern is checked in: the chosen size, else all sizes; if a body was chosen
+/// and no size, the pattern as drafted to that body.
 pub(crate) fn sizes_to_check(project: &Project) -> SizeSelection {
     match (&project.size, &project.body) {
         (Some(size), _) => SizeSelection::one(size),
@@ -84,8 +84,8 @@ pub(crate) fn sized_diagnostics(
     Ok(told.collect())
 }
 
-/// Adds the diagnostics of one more size. Equal faults at one place are merged, whatever the
-/// numbers in their words.
+/// Adds the diagnostics of one more size. Equal faults at one place are merged even if the numbers in their
+/// words differ.
 fn gather(
     found: &mut Vec<(SizedDiagnostic, usize)>,
     diagnostics: Vec<Diagnostic>,

@@ -3,7 +3,7 @@
 use crate::Session;
 
 impl Session {
-    /// A session of the same project with the values derived from it already, without history and
+    /// A copy of the session with the project and all values derived from it so far, without history and
     /// journal. Cheap.
     pub fn snapshot(&self) -> Self {
         Self {
@@ -14,8 +14,8 @@ impl Session {
         }
     }
 
-    /// A snapshot that knows the commands that led to it and how long they took, for an export that writes
-    /// them down.
+    /// A snapshot that also has the journal and the times that its commands took, for an export that writes
+    /// them.
     pub fn snapshot_to_export(&self) -> Self {
         Self {
             journal: self.journal.clone(),
@@ -24,14 +24,14 @@ impl Session {
         }
     }
 
-    /// Adopts the values that a snapshot has derived meanwhile, as far as they are still valid; not a drape
-    /// that it has made: the garment on show is exported as it was pulled.
+    /// Adopts the values that a snapshot has derived since it was made, as far as they are still valid. A
+    /// drape made by the snapshot is not adopted: the drape of this session may have been pulled by hand.
     pub fn adopt_export(&mut self, mut snapshot: Self) {
         snapshot.derived.drape = None;
         self.adopt(snapshot);
     }
 
-    /// Adopts the values that a snapshot has derived meanwhile, as far as they are still valid.
+    /// Adopts the values that a snapshot has derived since it was made, as far as they are still valid.
     pub fn adopt(&mut self, snapshot: Self) {
         if snapshot.project == self.project {
             self.derived.adopt(snapshot.derived);

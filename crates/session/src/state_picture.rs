@@ -14,13 +14,13 @@ pub(crate) struct ShownSurface {
     pub name: String,
     /// Mesh at its present position.
     pub mesh: TriangleMesh,
-    /// The panel of each triangle of a cloth; none for a solid.
+    /// The panel of each triangle of a cloth; `None` for a solid.
     pub panels: Option<Vec<u32>>,
-    /// Whether it is a solid at rest.
+    /// Whether the surface is a solid at rest.
     pub is_still: bool,
 }
 
-/// Box that a surface has been in.
+/// Box that a surface has been in during the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Visited {
@@ -47,7 +47,7 @@ pub(crate) type Ways = BTreeMap<String, Visited>;
 pub(crate) struct RunCamera {
     /// Boxes that the camera has to take in.
     pub ways: Ways,
-    /// Surface that the camera follows; none if it stands still.
+    /// Surface that the camera follows; `None` if the camera stands still.
     pub followed: Option<String>,
 }
 
@@ -131,8 +131,8 @@ impl RunCamera {
         Ok(drape_picture(&scene(surfaces), &sheet)?.to_png()?)
     }
 
-    /// The box that a picture shows (m): all that moves with the solids at rest beside it, or the surface
-    /// followed.
+    /// The box that a picture shows (m): all surfaces that move and the solids at rest beside them, or the
+    /// followed surface.
     fn room(&self, surfaces: &[ShownSurface]) -> Option<[Vec3; 2]> {
         if let Some(name) = &self.followed {
             let surface = surfaces.iter().find(|surface| surface.name == *name)?;

@@ -19,14 +19,14 @@ use toile_pattern::{MarkerId, Pattern};
 pub struct MarkerJob {
     /// Name of the marker.
     pub name: String,
-    /// Search whose result is stored in the file; none leaves the marker as it is stored.
+    /// Search whose result is stored in the file; `None` leaves the marker as it is stored.
     pub search: Option<(Start, Search)>,
     /// Files to write.
     pub formats: Vec<MarkerFormat>,
 }
 
 /// Searches for the layout of a marker of a pattern file, stores the placements in the file, and writes the
-/// marker. Returns a summary of each roll that it is laid on, whose notes include the faults that keep it
+/// marker. Returns a summary of each roll that the marker is laid on, with notes on the faults that keep it
 /// from being cut, and the files written, the pattern's first if it was stored.
 ///
 /// # Errors
@@ -146,8 +146,8 @@ fn written(
     Ok((summaries.collect(), files))
 }
 
-/// Refuses to store a marker in a file with parts that this program does not know: they would be lost, for
-/// the whole file is written anew.
+/// Refuses to store a marker in a file with parts that this program does not know: the whole file is written
+/// anew, and these parts would be lost.
 fn refuse_loss(
     path: &Path,
     (format, notes): (PatternFormat, &[String]),

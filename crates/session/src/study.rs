@@ -12,21 +12,21 @@ use toile_marker::{FinishedMarker, Garments};
 use toile_nesting::{Fold, Marker, judge};
 use toile_pattern::{LayingRule, Pattern, Print, Roll};
 
-/// Cost of a rule.
+/// Cost of a rule of the trade, in fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RuleCost {
     /// The rule, in words.
     pub rule: String,
     /// Fabric a set of garments needs, on average over the seeds (m).
     pub fabric: f64,
-    /// Area of the garments' pieces without any rule over that of the fabric laid open, 0..=1; not
-    /// a number where pieces found no place.
+    /// Area of the garments' pieces, as laid without any rule, over the area of the fabric laid open, 0..=1;
+    /// not a number if pieces found no place.
     pub efficiency: f64,
-    /// Efficiency without the rule less that with it (1); not a number if either is none.
+    /// Efficiency without the rule minus efficiency with it (1); not a number if either is not a number.
     pub cost: f64,
-    /// Pieces of one set of garments that found no place, at most over the seeds.
+    /// Number of pieces of one set of garments that found no place: the most over the seeds.
     pub unplaced: usize,
-    /// Reason why the garments could not be laid with the rule, if so.
+    /// Reason why the garments could not be laid with the rule, if they could not.
     pub refused: Option<String>,
 }
 
@@ -40,13 +40,13 @@ fn rule(words: &str, change: impl Fn(&mut NestOptions) + 'static) -> Rule {
     (words.to_owned(), Box::new(change))
 }
 
-/// The laying rule of all pieces, to be changed.
+/// The laying rule that applies to all pieces, to be changed by a studied rule.
 fn every_piece(options: &mut NestOptions) -> &mut LayingRule {
     let pieces = &mut options.settings.pieces;
     &mut pieces.entry(ANY_NAME.to_owned()).or_default().rule
 }
 
-/// A print that repeats along the warp and across (m).
+/// A printed fabric whose print repeats along the warp and across it (m).
 fn print(repeat: [f64; 2]) -> Option<Print> {
     Some(Print {
         repeat,
@@ -54,7 +54,8 @@ fn print(repeat: [f64; 2]) -> Option<Print> {
     })
 }
 
-/// The rules to study; places of flaws and lengths of rolls fit the markers found without any rule.
+/// The rules to study. Positions of flaws and lengths of rolls are chosen to suit `base`, the markers found
+/// without any rule.
 fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
     let length = base.fabric;
     let fabrics = base.fabrics.clone();
@@ -125,7 +126,7 @@ fn rules(patterns: &[&Pattern], base: &Found) -> Vec<Rule> {
     all
 }
 
-/// Both marks of the first notch whose name two panels share.
+/// Both marks of the first notch name that two panels share.
 fn shared_notch(patterns: &[&Pattern]) -> Option<Vec<String>> {
     for pattern in patterns {
         for (k, panel) in pattern.panels.iter().enumerate() {
@@ -143,8 +144,8 @@ fn shared_notch(patterns: &[&Pattern]) -> Option<Vec<String>> {
     None
 }
 
-/// Lays the garments without and with each rule, from several seeds each, and compares the fabric
-/// they need. The first row is without any rule but those of `options`.
+/// Lays the garments without and with each rule, from several seeds each, and compares the lengths of fabric.
+/// The first entry of the result is without any rule except those of `options`.
 ///
 /// # Errors
 /// A pattern cannot be read, or the garments cannot be laid even without the rules.
@@ -187,7 +188,7 @@ pub fn study_rules(
 /// The markers of each seed, of every fabric and roll.
 type Tried = Vec<Vec<FinishedMarker>>;
 
-/// A row for each rule.
+/// One entry of the result for each rule.
 fn rows<'a>(
     words: impl Iterator<Item = &'a str>,
     tried: Vec<Result<Tried, SessionError>>,
@@ -201,7 +202,7 @@ fn rows<'a>(
         Some(Ok(base)) => base,
         _ => &nothing,
     };
-    // Pieces that lie nowhere take no fabric: then there is nothing to compare.
+    // Pieces that found no place take no fabric: the efficiencies could not be compared.
     let efficiency = |found: &Found| match found.unplaced {
         0 => base.area / found.fabric_area,
         _ => f64::NAN,
@@ -227,8 +228,8 @@ fn rows<'a>(
     words.zip(&found).map(row).collect()
 }
 
-/// Replaces each marker by that of another rule if that is shorter and keeps this rule, too: a search does
-/// not find the optimum, so that more freedom might otherwise seem to cost fabric.
+/// Replaces each marker by the marker found for another rule if that is shorter and keeps this rule, too: a
+/// search does not find the optimum, so that more freedom might otherwise seem to cost fabric.
 fn carried_over(mut tried: Vec<Result<Tried, SessionError>>) -> Vec<Result<Tried, SessionError>> {
     let all: Vec<Tried> = tried.iter().flatten().cloned().collect();
     for (seed, own) in tried
@@ -250,7 +251,8 @@ fn carried_over(mut tried: Vec<Result<Tried, SessionError>>) -> Vec<Result<Tried
     tried
 }
 
-/// Another marker of the same fabric, measured under the rules of `own`, if it is sound and better.
+/// The layout of `other` measured under the rules of `own`, if it keeps these rules and is better; only for
+/// the same fabric.
 fn under_the_rules_of(own: &FinishedMarker, other: &FinishedMarker) -> Option<Marker> {
     let is_whole = own.sources.is_none() && other.sources.is_none() && other.missing.is_empty();
     if own.fabric != other.fabric || own.items.len() != other.items.len() || !is_whole {
@@ -273,12 +275,12 @@ struct Found {
     fabric_area: f64,
     /// Length of the longest marker of each fabric, and its width laid open (m).
     fabrics: BTreeMap<String, [f64; 2]>,
-    /// Most pieces of one seed that found no place.
+    /// Largest number of pieces of one seed that found no place.
     unplaced: usize,
 }
 
 impl Found {
-    /// The mean over seeds; of pieces that found no place, the most of one seed.
+    /// Means over the seeds; for pieces that found no place, the most of one seed.
     fn of(tried: &Tried) -> Self {
         let mut found = Self::default();
         for markers in tried {
@@ -321,7 +323,7 @@ fn points(share: f64) -> String {
     }
 }
 
-/// The rows as a table.
+/// The costs of the rules as a table of text.
 pub fn rule_table(rows: &[RuleCost], budget: Budget) -> String {
     let budget = match budget {
         Budget::Evaluations(count) => format!("{} M evaluations", count as f64 / 1e6),

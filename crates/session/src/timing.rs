@@ -21,7 +21,7 @@ struct TimingFile {
 }
 
 impl Timing {
-    /// Starts again.
+    /// Resets all times to zero.
     pub fn restart(&mut self) {
         *self = Self {
             cpu_start: cpu_seconds(),

@@ -35,10 +35,10 @@ use toile_interchange::{
 use toile_measure::Measurements;
 use toile_pattern::Draft;
 
-/// Refuses a file whose name does not end as one of those that can be written.
+/// Refuses an output file whose name does not have one of the `known` endings.
 ///
 /// # Errors
-/// Another ending, or none.
+/// Another ending, or no ending.
 pub(crate) fn check_ending(to: &Path, known: &[&str], remedy: &str) -> Result<(), SessionError> {
     let name = to
         .file_name()
@@ -92,9 +92,9 @@ pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
     Ok(draft)
 }
 
-/// Converts a pattern between formats: to the one asked for, else by the name of the output.
-/// Panels that the input places in space, round `origin`, are written as they stand on the floor.
-/// Returns notes on parts that were left out or assumed in reading and writing.
+/// Converts a pattern to the format asked for, or else to the format of the output's name. Panels that the
+/// input places in space, round `origin`, are written as they stand on the floor. Returns notes on parts that
+/// were left out or assumed in reading and writing.
 ///
 /// # Errors
 /// The input cannot be read, the output has a name of another format, or cannot be written.
@@ -132,9 +132,9 @@ pub fn convert(
     Ok(notes)
 }
 
-/// The triangulated panels of a pattern in a row, as OBJ with a group a panel; texture coordinates
-/// are the panels' own planes (m). Returns the quality of the triangles, and notes on parts that
-/// were left out or are missing.
+/// Writes the triangulated panels of a pattern side by side as OBJ, one group for each panel; texture
+/// coordinates are positions in the planes of the panels (m). Returns the quality of the triangles, and notes
+/// on parts that were left out or are missing.
 ///
 /// # Errors
 /// The pattern cannot be read or meshed, or the file cannot be written.
@@ -177,12 +177,12 @@ pub fn mesh_panels(
     Ok((combine(&parts), notes))
 }
 
-/// A mannequin's measurements as asked and as got.
+/// Measurements of a mannequin as they were asked for and as the tape takes them on the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyReport {
     /// Measurements that were asked for, then those that were predicted.
     pub rows: Vec<Deviation>,
-    /// Measurements that were asked for and that no tape takes from a standing body.
+    /// Measurements that were asked for but that no tape takes from a standing body.
     pub untaken: Vec<String>,
     /// Measurements that were asked for and contradict each other.
     pub conflicts: Vec<Conflict>,
@@ -192,7 +192,7 @@ pub struct BodyReport {
     pub proportions: ProportionBox,
 }
 
-/// A moment of a motion: `walk`, `run`, a BVH file or a VRML or X3D one, and the time (s).
+/// A moment of a motion: the motion (`walk`, `run`, a BVH, VRML or X3D file) and the time (s).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moment {
     /// Name of the motion, or its file.
@@ -213,7 +213,8 @@ impl Moment {
         )
     }
 
-    /// The whole motion, for a mannequin, with notes on parts of its file that were left out.
+    /// The clip of the whole motion for a mannequin, with notes on parts of the motion's file that were left
+    /// out.
     fn motion_for(&self, mannequin: &Mannequin) -> Result<(Clip, Vec<String>), SessionError> {
         let skeleton = mannequin.skeleton();
         let (own, blend) = (own_clip(&self.motion, skeleton), &self.blend);
@@ -298,7 +299,7 @@ fn scan_error(mesh: &Path, error: &BodyError) -> SessionError {
     }
 }
 
-/// Measures a closed mesh of a standing person by the tape of our own bodies and writes the table
+/// Measures a closed mesh of a standing person with the tape that measures mannequins, and writes the table
 /// of measurements.
 ///
 /// # Errors
@@ -331,15 +332,15 @@ pub fn fit_mesh(person: &PersonFile, figure: Figure) -> Result<(Fit, Vec<String>
 /// Scaling asked of a body: proportions, stature and the five scaling parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyStretch {
-    /// Proportions to bring the body to first, at the stature it has.
+    /// Proportions that the body is first brought to, at the stature that it has.
     pub proportions: Option<ProportionBox>,
-    /// Stature to bring the body to (m).
+    /// Stature that the body is brought to (m).
     pub stature: Option<f64>,
     /// The scaling parameters; the global one multiplies the scale to the stature.
     pub ratios: Scaling,
 }
 
-/// Scales the body described, which has a frame of its own, or else the body of a figure.
+/// Scales the body in `described`, which has a frame of its own; without it, the body of `figure`.
 ///
 /// # Errors
 /// A body grown to measurements, or ratios no body has.
@@ -368,14 +369,14 @@ pub fn stretch_body(
 pub enum BodySource<'a> {
     /// The wearer of a project.
     Wearer(&'a Project),
-    /// A mannequin file's description.
+    /// The description in a mannequin file.
     Described(&'a Description),
 }
 
-/// Makes a mannequin and writes it by the name of the file: `.glb` with skeleton and the whole clip of the
-/// motion, `.character.json` with ellipsoids and clips for real time, other `.json` as a mannequin file, else
-/// its skin as OBJ, at rest or at a moment of a motion. Returns every measurement as asked or predicted and
-/// as got at rest.
+/// Makes a mannequin and writes it in the format of the file's ending: `.glb` with skeleton and the whole
+/// clip of the motion; `.character.json` with ellipsoids and clips for real time; other `.json` as a
+/// mannequin file; else its skin as OBJ, at rest or at a moment of a motion. Returns every measurement as
+/// asked or predicted and as taken at rest.
 ///
 /// # Errors
 /// Measurements no body can have, a motion that cannot be read, a file of another kind or one that

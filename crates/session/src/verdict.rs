@@ -24,20 +24,21 @@ use toile_drape::{
 };
 use toile_geometry::Vec3;
 
-/// Stretch beyond which a garment is called too tight (1): a knit gives as much at ease.
+/// Stretch beyond which a garment is called too tight (1): a knit stretches as much without strain on the
+/// wearer.
 const TIGHT: f64 = 0.15;
 /// Depth in the body to which cloth that is too tight may be pressed (m).
 const PRESSED: f64 = 0.03;
-/// Depth of a vertex inside a solid beyond which cloth went through it: contact gives way by less where cloth
-/// presses (m).
+/// Depth of a vertex inside a solid beyond which the cloth is judged to have passed through (m): cloth that
+/// only presses on the solid sinks in less.
 const THROUGH: f64 = 0.01;
 /// Stretch of the cloth of a scene beyond which no cloth bears it (1): woven cloth tears long before.
 const OVERSTRETCHED: f64 = 1.0;
-/// Depth below the floor up to which a hem only touches it (m).
+/// Depth below the floor up to which a hem counts as only touching the floor (m).
 const ON_FLOOR: f64 = 0.02;
-/// Distance from the body within which cloth touches it, in contact offsets.
+/// Distance up to which cloth counts as touching the body, as a multiple of the contact offset (1).
 const TOUCH: f64 = 1.5;
-/// Most names that a list spells out.
+/// Largest number of names that a list spells out.
 const MAX_NAMES: usize = 4;
 
 /// Judges a garment at the present state of its run: at rest, or when its seams could not be closed.
@@ -70,7 +71,7 @@ pub(crate) fn of_garment(job: &GarmentJob, run: &GarmentRun, measures: &Measures
     verdict.judge(Aspect::Tangle, garment_tangle(run, measures));
     let remedy = "say where its panels are worn, so that they hang clear of arms and legs, or give it more ease (a larger size) where it is narrower than the body";
     let through = through_solid("the body", (measures, deepest_in_body(measures)), remedy);
-    // The tightness of cloth that hangs on a body that goes through it says nothing.
+    // The tightness of cloth on a body that passes through the cloth is meaningless.
     if through.is_none() {
         verdict.judge(Aspect::Tightness, tightness(measures));
     }
@@ -147,7 +148,7 @@ fn overstretched(measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Finding on a net force above the one that counts as rest.
+/// Finding that the net force is above the goal that counts as rest.
 fn unrest(residual: f64, goal: f64, steps: usize, remedy: &str) -> Option<Finding> {
     let at_rest = residual <= goal;
     (!at_rest).then(|| {
@@ -159,7 +160,7 @@ fn unrest(residual: f64, goal: f64, steps: usize, remedy: &str) -> Option<Findin
     })
 }
 
-/// Words for a net force over weight, to stand before "the weight"; plain figures if it is large.
+/// Net force over weight in words that stand before "the weight"; a number if it is large.
 fn force(residual: f64) -> String {
     match residual {
         many if many >= 1.0 => format!("{many:.1} times"),
@@ -207,7 +208,7 @@ fn off_body(job: &GarmentJob, run: &GarmentRun) -> Vec<Finding> {
     found
 }
 
-/// The names of the panels of some parts.
+/// Names of the panels that have cloth in some of the connected parts of the garment.
 fn panels_of(job: &GarmentJob, run: &GarmentRun, parts: &[&Support]) -> String {
     let has = |v: usize| {
         let merged = run.target()[v];
@@ -254,7 +255,7 @@ fn crumpled(job: &GarmentJob, run: &GarmentRun) -> Option<Finding> {
     Some(Finding::bad(Aspect::Hang, words))
 }
 
-/// The vertices of cloth that is stretched so much that it is called too tight.
+/// The merged vertices of cloth that is stretched beyond `TIGHT`.
 fn taut(run: &GarmentRun) -> BTreeSet<u32> {
     let stretch = stretch_per_triangle(&run.system, &run.state.positions);
     let triangles = run.system.topology.triangles.iter().zip(stretch);
@@ -262,7 +263,7 @@ fn taut(run: &GarmentRun) -> BTreeSet<u32> {
     tight.flat_map(|(corners, _)| *corners).collect()
 }
 
-/// Finding on cloth that is in more parts than there are garments.
+/// Finding that the cloth is in more connected parts than there are garments.
 fn in_parts(parts: usize, garments: usize) -> Option<Finding> {
     (parts > garments).then(|| {
         let words = format!(
@@ -272,7 +273,7 @@ fn in_parts(parts: usize, garments: usize) -> Option<Finding> {
     })
 }
 
-/// Finding on folds of a garment's cloth that lie in one another.
+/// Finding that folds of a garment's cloth intersect.
 fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
     let [found, most, _] = run.cloth_tally().crossings;
     (measures.self_intersections > 0).then(|| {
@@ -284,7 +285,7 @@ fn garment_tangle(run: &GarmentRun, measures: &Measures) -> Option<Finding> {
     })
 }
 
-/// Finding on cloth that went through a solid: deeper than a limit (m), or with edges from one side to the
+/// Finding that cloth passed through a solid: deeper than a limit (m), or with edges from one side to the
 /// other.
 fn through_solid(
     solid: &str,
@@ -308,13 +309,13 @@ fn through_solid(
     })
 }
 
-/// Depth in the body up to which the cloth of a garment counts as pressed in (m).
+/// Depth in the body up to which the cloth of a garment still counts as pressed in (m).
 fn deepest_in_body(measures: &Measures) -> f64 {
     let is_tight = measures.strain_max.iter().any(|&strain| strain > TIGHT);
     if is_tight { PRESSED } else { THROUGH }
 }
 
-/// Findings on cloth that is stretched, or crosses the body without having gone through it.
+/// Findings on cloth that is stretched too much, or crosses the body without having passed through it.
 fn tightness(measures: &Measures) -> Vec<Finding> {
     let mut found = Vec::new();
     if measures.body_intersections > 0 {
@@ -336,7 +337,7 @@ fn tightness(measures: &Measures) -> Vec<Finding> {
     found
 }
 
-/// Findings on layers that are not outside one another.
+/// Findings on layers of garments that do not lie outside the layers below them.
 fn disorder(measures: &Measures, parts: &[GarmentPart]) -> Vec<Finding> {
     let wrong = measures
         .layers
@@ -356,8 +357,8 @@ fn disorder(measures: &Measures, parts: &[GarmentPart]) -> Vec<Finding> {
     words.collect()
 }
 
-/// Findings on elastics that are open at the end: those that no force can close, and those that may still
-/// close.
+/// Findings on elastics whose ends have not met at the end of the run: those that no force can close, and
+/// those that may still close.
 fn open_elastics(run: &SceneRun) -> Vec<Finding> {
     let open = run.open_attachments();
     let settings = run.settings();
@@ -404,8 +405,8 @@ fn open_elastics(run: &SceneRun) -> Vec<Finding> {
         .collect()
 }
 
-/// Least share of its gap that an elastic must close in another run as long, at its present speed, to count
-/// as closing (1).
+/// Smallest share of its gap that an elastic must close in another run of the same length, at its present
+/// speed, to count as closing (1).
 const CLOSING: f64 = 0.5;
 
 /// Words for an elastic: its index in the scene, with its ends.

@@ -43,7 +43,7 @@ impl<F: FnMut(&str, f64, &str) -> ControlFlow<()>> Watcher for F {
     }
 }
 
-/// Maps the progress of one part of the work to a share of the whole, which never falls.
+/// Maps the progress of one part of the work into a range of the progress of the whole, which never falls.
 pub(crate) struct ProgressShare<'a> {
     whole: &'a mut dyn Watcher,
     from: f64,
@@ -52,7 +52,7 @@ pub(crate) struct ProgressShare<'a> {
 }
 
 impl<'a> ProgressShare<'a> {
-    /// The part from one share of the whole to another.
+    /// The part of the work between two values of the progress of the whole.
     pub fn new(whole: &'a mut dyn Watcher, from: f64, to: f64) -> Self {
         Self {
             whole,

@@ -8,7 +8,7 @@ use toile_geometry::{Curve, Vec2};
 /// The coordinates in which control points are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coordinates {
-    /// In the frame of the edge: along it and to its left, as fractions of its length.
+    /// In the frame of the edge: along the edge and to its left, as fractions of the edge's length.
     Relative,
     /// In the panel's plane, in file units.
     Absolute,
@@ -83,8 +83,8 @@ pub(super) fn read_curve(
     }
 }
 
-/// An arc by its radius. The flags say whether it is the larger of the two arcs, and whether it bulges to the
-/// right of the direction from start to end.
+/// An arc by its radius. The flags tell whether it is the larger of the two arcs, and whether it bulges to
+/// the right of the direction from start to end.
 fn circle(
     [start, end]: [Vec2; 2],
     radius: f64,

@@ -16,8 +16,8 @@ const GATHER_RATIO: f64 = 1.05;
 /// Limit for the cosine of the angle between two sewn edges, both in the direction of sewing: below it the
 /// seam is reported as perhaps twisted.
 const TWIST_COSINE: f64 = -0.7;
-/// Limit for the cosine of the angle between two edges: the positions in space tell which ends meet only
-/// where its magnitude is above this.
+/// Limit for the cosine of the angle between two edges: only where its magnitude is above this limit do the
+/// positions in space tell which ends of the edges meet.
 const CLEAR_COSINE: f64 = 0.7;
 
 /// The result of reading a file.
@@ -35,9 +35,9 @@ pub struct GarmentCodeReading {
 /// panel is one drawn from its wrong side. A stitch sews the start of one edge to the end of the other, which
 /// puts right sides together and keeps the garment orientable; `right_wrong` sews start to start. Files of
 /// the older kind (curvatures as bare lists, or absolute coordinates) may be wound either way; for them the
-/// sewing direction is the one that leaves the ends nearer to each other in space. Edges of one panel that
-/// share a vertex (a dart) keep it. A seam with sides that differ in length by more than 5 % is gathered;
-/// smaller differences are ease.
+/// sewing direction is the one that leaves the ends nearer to each other in space. Two edges of one panel
+/// that share a vertex (the legs of a dart) are sewn so that they meet at that vertex. A seam with sides that
+/// differ in length by more than 5 % is gathered; smaller differences are ease.
 ///
 /// # Errors
 /// Text that is not such a specification: the path of the place and a remedy.
@@ -74,7 +74,8 @@ pub fn read_garmentcode(text: &str) -> Result<GarmentCodeReading, FormatError> {
     })
 }
 
-/// Edge of the document made from an edge of the file: its id, and whether it is walked backwards there.
+/// Edge of the document made from an edge of the file: its id, and whether the document walks the file's edge
+/// backwards.
 type Place = (EdgeId, bool);
 
 #[derive(Default)]
@@ -82,7 +83,7 @@ struct Builder {
     pattern: Pattern,
     notes: Vec<FormatError>,
     names: BTreeSet<String>,
-    /// For each panel of the file, the document's edge of each of its edges.
+    /// For each panel of the file and each of its edges, the edge of the document that was made from it.
     edges: Vec<Vec<Option<Place>>>,
     /// Whether all outlines of an older file are wound as seen from the right side.
     right_sides_out: bool,

@@ -6,7 +6,7 @@ use toile_geometry::{Curve, Vec2};
 use toile_measure::Measurements;
 use toile_pattern::{CurveRule, Draft, Worn};
 
-/// Two panels with every kind of curve, placed apart and sewn twice: once start to end, once reversed.
+/// Two panels with every kind of curve, placed apart and sewn by two seams: one start to end, one reversed.
 const SAMPLE: &str = r#"{
   "pattern": {
     "panels": {

@@ -8,9 +8,9 @@ use toile_pattern::{Draft, DraftSeam, Facing, Piece, PieceEdge, Worn};
 
 /// Size of the file unit, the centimetre (m).
 const UNIT: f64 = 0.01;
-/// Cuts nearer to each other than this fraction of an edge are the same cut.
+/// Two cuts nearer to each other than this fraction of an edge are the same cut.
 const SAME_CUT: f64 = 1e-7;
-/// Limit for the rounds of carrying cuts across seams.
+/// Largest number of rounds in which cuts are carried across seams.
 const MAX_ROUNDS: usize = 32;
 
 /// A written file.
@@ -140,7 +140,7 @@ impl Writer<'_> {
         ));
     }
 
-    /// Cuts edges at the ends of spans, and carries every cut across every seam until nothing changes.
+    /// Cuts edges at the ends of spans, and carries every cut across every seam until no new cut arises.
     fn find_cuts(&mut self) {
         let start = |piece: &Piece| edges(piece).map(|_| vec![0.0, 1.0]).collect();
         self.cuts = self.draft.pieces.iter().map(start).collect();
@@ -328,7 +328,7 @@ impl Writer<'_> {
             .collect()
     }
 
-    /// Piece, and index of the written edge that contains a fraction of the stretch's edge.
+    /// Piece of a stretch, and index of the written edge that contains a fraction of the stretch's edge.
     fn part(&self, stretch: &Stretch, fraction: f64) -> (usize, usize) {
         let before: usize = self.cuts[stretch.piece][..stretch.edge]
             .iter()

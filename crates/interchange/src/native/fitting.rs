@@ -22,7 +22,7 @@ pub struct Fitting {
     pub width: Option<f64>,
     /// Layer of the garment among those worn together: larger numbers lie farther out.
     pub layer: u16,
-    /// Garments worn together with it.
+    /// Garments worn together with the pattern's garment.
     pub worn_with: Vec<FittingLayer>,
 }
 

@@ -140,7 +140,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The fields; unknown ones are noted.
+    /// The fields of an object; unknown fields are noted.
     pub fn object(
         &self,
         known: &[&str],
@@ -179,7 +179,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The fields, with any names.
+    /// The fields of an object, whatever their names.
     pub fn fields(&self) -> Result<Object<'a>, FormatError> {
         match &self.node.value {
             Value::Object(fields) => Ok(Object {
@@ -243,12 +243,12 @@ impl<'a> Item<'a> {
         self.read_number("a number", None, units::read_plain)
     }
 
-    /// Whether it is `null`.
+    /// Whether the value is `null`.
     pub fn is_null(&self) -> bool {
         matches!(self.node.value, Value::Null)
     }
 
-    /// A number, not a formula.
+    /// A plain number; a formula is refused.
     pub fn plain_value(&self) -> Result<f64, FormatError> {
         match &self.node.value {
             Value::Number(raw) => units::read_plain(raw).ok_or_else(|| self.not_finite()),
@@ -258,7 +258,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A length or angle (m) or (rad), not a formula.
+    /// The value of a length (m) or an angle (rad); a formula is refused.
     pub fn fixed(&self, number: &Written<'_>) -> Result<f64, FormatError> {
         match number {
             Written::Value(value) => Ok(*value),
@@ -283,7 +283,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A word of a closed list; returns the index in the list.
+    /// A word of the closed list `words`; returns its index in the list.
     pub fn word(&self, words: &[&str]) -> Result<usize, FormatError> {
         let word = self.text()?;
         let found = words.iter().position(|known| *known == word);
@@ -314,8 +314,8 @@ impl<'a> Object<'a> {
     }
 
     /// The kind of the object: the first kind whose distinguishing fields are all present. An object with
-    /// fields of two kinds is refused, since the fields of one would be lost. So is one of no kind, if
-    /// `clash` says so.
+    /// fields of two kinds is refused, since the fields of one would be lost. An object of no kind is refused
+    /// if `clash` says so.
     pub fn kind(&self, kinds: &[Kind], clash: &Clash) -> Result<Option<usize>, FormatError> {
         let tells = |kind: &Kind| match kind.told {
             Told::Field(_) | Told::By(_) => {

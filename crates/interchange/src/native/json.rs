@@ -370,7 +370,7 @@ pub fn write(value: &Value) -> String {
     text
 }
 
-/// Writes `value` after `used` columns of a line that is indented by `indent`.
+/// Writes `value` on a line that is indented by `indent`, after the `used` columns already written on it.
 fn lay_out(value: &Value, indent: usize, used: usize, text: &mut String) {
     let room = LINE_WIDTH.saturating_sub(used);
     let mut line = String::new();
@@ -423,7 +423,7 @@ fn lay_out(value: &Value, indent: usize, used: usize, text: &mut String) {
     }
 }
 
-/// Writes a value on one line; returns whether it fits into the room.
+/// Writes a value on one line; returns whether it fits into `room` (characters).
 fn inline(value: &Value, room: usize, line: &mut String) -> bool {
     match value {
         Value::Null => line.push_str("null"),

@@ -32,7 +32,7 @@ pub fn read_part<'a>(reader: &mut Reader<'a>, item: Item<'a>, part: &mut dyn Fie
     }
 }
 
-/// Reads the whole document, without the fields in `elsewhere`.
+/// Reads the whole document, apart from the fields named in `elsewhere`.
 pub fn read_root<'a>(
     reader: &mut Reader<'a>,
     item: Item<'a>,
@@ -46,16 +46,16 @@ pub fn read_root<'a>(
 
 /// The place in which the next field is looked up.
 enum Place<'a> {
-    /// In an object, or in the item itself.
+    /// In an object; or in the item itself, if it is not an object.
     Part {
         item: Item<'a>,
         object: Option<Object<'a>>,
-        /// The known fields: those asked for, and those of the part's other kinds.
+        /// The known fields: those asked for, and those of the other kinds of the part.
         known: Vec<&'static str>,
-        /// Whether the item is a value of its own, so that its fields are not fields of a part.
+        /// Whether the item is a single value, so that its fields are not fields of a part.
         is_value: bool,
     },
-    /// In a list, in which the next item is taken.
+    /// In a list, from which the next item is taken.
     List(std::vec::IntoIter<Item<'a>>),
 }
 
@@ -75,7 +75,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         Self { reader, place }
     }
 
-    /// Keeps the first error.
+    /// The value of a result; the first error is stored as the reader's fault.
     fn take<T>(&mut self, result: Result<T, FormatError>) -> Option<T> {
         match result {
             Ok(value) => Some(value),
@@ -124,7 +124,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
     }
 
-    /// Changes the part to the kind that the item has, and marks the fields of all kinds as known.
+    /// Changes the part to the kind that the item has, and adds the fields of all kinds to the known ones.
     fn choose_kind(&mut self, part: &mut dyn Fields) {
         let kinds = part.kinds();
         let Place::Part { item, known, .. } = &mut self.place else {
@@ -166,7 +166,7 @@ impl<'r, 'a> PartReader<'r, 'a> {
         }
     }
 
-    /// Reads the content of a field; the group may replace any error by a message of its own.
+    /// Reads the content of a field; the field's group may replace any error message by its own.
     fn within(&mut self, group: Group, read: impl FnOnce(&mut Reader<'a>, Item<'a>)) {
         let Some(item) = self.child(group.key, group.may_lack) else {
             return;
@@ -352,7 +352,7 @@ fn set_value(
     Ok(())
 }
 
-/// Sets a value that the file leaves out, if that means something else than in an empty part.
+/// Sets a flag that the file leaves out, if leaving it out means another value than an empty part has.
 fn set_absent(field: ValueField, value: ValueMut<'_>) {
     if let (ValueMut::Flag(flag), Some(absent)) = (value, field.absent_flag) {
         *flag = absent;

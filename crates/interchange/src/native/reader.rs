@@ -13,11 +13,11 @@ use toile_pattern::{AnyId, Diagnostic, DisplayUnit, Formula, Names, Number, Part
 /// State of the reader.
 pub struct Reader<'a> {
     pub notes: Vec<Diagnostic>,
-    /// The first error found in the fields of a part; nothing is read after it.
+    /// The first error found in the fields of a part; after it, no more fields are read.
     pub fault: Option<FormatError>,
     pub unit: DisplayUnit,
     names: Names,
-    /// Ids of the parts in the file.
+    /// Ids that the parts of the file have.
     given: HashMap<u32, PartId>,
     /// Ids that are referred to, with the place of the reference.
     referred: Vec<(PartId, Item<'a>)>,
@@ -40,7 +40,7 @@ impl<'a> Reader<'a> {
         measurements(item, self.unit, &mut self.notes)
     }
 
-    /// Reads the id of a part.
+    /// Reads the id that a part itself has.
     pub fn own(&mut self, item: &Item<'a>, id: &mut dyn AnyId) -> Result<(), FormatError> {
         let number = item.count()?;
         id.set_number(number);
@@ -60,7 +60,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses references to an id of another kind or to one never given. A reference to a deleted part is
+    /// Refuses references to an id of another kind or to an id never given. A reference to a deleted part is
     /// allowed: it becomes valid when the part is restored.
     pub fn check_ids(&self, item: &Item<'_>, next: u32) -> Result<(), FormatError> {
         if let Some((highest, id)) = self.given.iter().max_by_key(|(number, _)| **number)

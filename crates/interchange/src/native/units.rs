@@ -5,7 +5,7 @@ use toile_pattern::DisplayUnit;
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
 
-/// Power of ten from metres to the unit, for decimal units.
+/// Power of ten from metres to the unit; `None` for units that are not decimal.
 fn decimals(unit: DisplayUnit) -> Option<i32> {
     match unit {
         DisplayUnit::Metre => Some(0),
@@ -24,7 +24,7 @@ pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Larger lengths (m) might exceed the number range of other programs.
+/// Largest length that is written (m): larger ones might exceed the number range of other programs.
 const LARGEST: f64 = 1e290;
 
 /// The number for a length (m); `None` if no number is read back exactly.
@@ -62,7 +62,7 @@ pub fn write_plain(value: f64) -> String {
     decimal(value, 0)
 }
 
-/// Candidates: a round number near the value, the value, then its neighbours.
+/// Texts to try, in this order: a round number near the value, the value itself, its neighbours in `f64`.
 fn neighbours(value: f64) -> Vec<String> {
     let round: f64 = format!("{value:.12e}").parse().unwrap_or(value);
     [

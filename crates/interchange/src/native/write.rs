@@ -7,7 +7,7 @@ use super::writer::{Object, Writer, count, text};
 use crate::FormatError;
 use toile_pattern::Pattern;
 
-/// Writes a pattern, and the fitting of its garment that `fitting` returns.
+/// Writes a pattern, and the fitting of its garment that the function `fitting` returns.
 pub fn write(
     pattern: &Pattern,
     fitting: impl FnOnce(&Writer) -> Result<Option<Value>, FormatError>,

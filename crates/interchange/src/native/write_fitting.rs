@@ -6,7 +6,7 @@ use super::writer::{Object, Writer, count, text};
 use crate::FormatError;
 use toile_pattern::{Number, Want};
 
-/// The fitting of the garment; `None` if it is entirely the pattern's own.
+/// The fitting of the garment as JSON; `None` if it differs in no value from the pattern's own.
 pub fn fitting(writer: &Writer, fitting: &Fitting) -> Result<Option<Value>, FormatError> {
     if *fitting == Fitting::default() {
         return Ok(None);

@@ -10,7 +10,7 @@ use toile_geometry::{Polygon, Vec2};
 pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
 const BLUE: Ink = [0.12, 0.31, 0.62];
 const PURPLE: Ink = [0.55, 0.2, 0.55];
-/// Smallest width of lines on a projector, and of lines to cut along (m).
+/// Smallest width on a projector (m): of lines in general, and of lines to cut along.
 const PROJECTED: [f64; 2] = [0.0012, 0.002];
 /// Letter sizes beside the fold and beside the grain line (m).
 const FOLD_LETTERS: f64 = 0.005;
@@ -30,7 +30,8 @@ const ARROW_SHARE: f64 = 0.9;
 const HEAD: f64 = 0.3;
 const HEAD_WIDTH: f64 = 0.5;
 
-/// Colour and dash length (m) of each size's lines, in turn: they differ in colour and in black and white.
+/// Colour and dash length (m) of the lines of each size, used in turn: the sizes differ in colour and also in
+/// black and white.
 const SIZES: [(Ink, f64); 8] = [
     ([0.07, 0.07, 0.07], 0.0),
     ([0.75, 0.1, 0.15], 0.012),
@@ -51,11 +52,11 @@ pub(crate) fn style(job: &PrintJob, kind: StrokeKind, layer: usize) -> LineStyle
     };
     let (ink, width, dash) = match kind {
         StrokeKind::Cut => (ink, 0.0005, dash),
-        // Fine and solid, to differ from the line to cut along.
+        // Fine and solid, to differ from the lines to cut along.
         StrokeKind::Sew => (if several { ink } else { [0.35; 3] }, 0.0002, 0.0),
         StrokeKind::Inside => (if several { ink } else { [0.35; 3] }, 0.0002, 0.004),
         StrokeKind::Notch => (ink, 0.000_35, 0.0),
-        // Drawn and not cut: as fine as the line to sew along.
+        // Drawn but not cut: as fine as the lines to sew along.
         StrokeKind::Mark | StrokeKind::Drill => {
             (if several { ink } else { [0.35; 3] }, 0.0002, 0.0)
         }
@@ -83,7 +84,7 @@ fn prints(job: &PrintJob, kind: StrokeKind) -> bool {
 }
 
 /// Draws a piece in all its sizes. Texts and grain line are drawn once, for the smallest size. Texts keep
-/// clear of the lines `clear_of`; without that list no texts are drawn.
+/// clear of the lines `clear_of`; if that list is `None`, no texts are drawn.
 pub(crate) fn piece_marks(
     job: &PrintJob,
     piece: &PrintPiece,
@@ -148,7 +149,7 @@ pub(crate) fn piece_marks(
     marks
 }
 
-/// Notches drawn as marks on the seam line, for prints without the cut line that they belong to.
+/// Notches drawn as marks on the seam line, for prints without the cut line that notches are cut into.
 fn seam_marks(
     job: &PrintJob,
     cut: &CutPiece,
@@ -189,7 +190,7 @@ fn press_marks(
             ));
         }
     }
-    // As visible as a notch, but not cut.
+    // Drawn as visibly as a notch, but not cut.
     let cut_like = style(job, StrokeKind::Notch, layer);
     let drawn = style(job, StrokeKind::Mark, layer);
     let style = LineStyle {
@@ -239,7 +240,7 @@ fn words_along(
     let left = Vec2::new(-way.y, way.x) * size;
     let middle = (from + to) * 0.5;
     let inside = fill.is_some_and(|fill| fill.contains(middle + left));
-    // The feet of the letters point to the fold, and the text is read from below or from the right.
+    // The letters stand with their feet towards the fold, and the text is read from below or from the right.
     let (way, above) = if inside { (way, left) } else { (-way, -left) };
     let upside_down = way.x < -1e-6;
     let (way, above) = match upside_down {

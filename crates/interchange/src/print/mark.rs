@@ -13,7 +13,7 @@ pub(crate) struct LineStyle {
     pub width: f64,
     /// Length of a dash (m); 0 for a solid line.
     pub dash: f64,
-    /// Purpose of the line, for lines of a piece.
+    /// Purpose of the line, for lines of a piece; `None` for other lines.
     pub layer: Option<Layer>,
 }
 
@@ -91,7 +91,7 @@ impl Mark {
         (corners.map(Vec2::from).to_vec(), true)
     }
 
-    /// Bounding box (m); that of a text has room for wider fonts.
+    /// Bounding box (m); the box of a text has room for wider fonts.
     pub fn bounds(&self) -> Bounds2 {
         match &self.shape {
             Shape::Line { points, .. } => Bounds2::of(points.iter().copied()),

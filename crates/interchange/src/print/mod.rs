@@ -44,7 +44,7 @@ pub enum Lines {
     Cut,
     /// The seam lines.
     Sew,
-    /// Both.
+    /// Both the cut lines and the seam lines.
     #[default]
     Both,
 }
@@ -98,7 +98,8 @@ const JOIN: LineStyle = LineStyle {
     width: 0.000_15,
     dash: 0.0,
 };
-/// Spacing of the lines that texts keep clear of (m): less than the height of the smallest letters.
+/// Spacing of the lines that texts keep clear of (m): less than the height of the smallest letters, so that
+/// no text fits between them.
 const ACROSS: f64 = 0.001;
 /// Distance between texts and the overlap of sheets (m).
 const BESIDE: f64 = 0.004;
@@ -180,8 +181,8 @@ impl PrintJob {
         marks
     }
 
-    /// Lines that texts keep clear of: along every overlap of sheets, and across sheets that are left out
-    /// because they show no line of a piece.
+    /// Lines that texts keep clear of: along every overlap of sheets, and across the sheets that are not
+    /// printed because they show no line of a piece.
     fn between_sheets(&self) -> Vec<[Vec2; 2]> {
         let (Some(step), Some(window)) = (self.paper.step(), self.paper.window()) else {
             return Vec::new();
@@ -278,8 +279,8 @@ impl PrintJob {
     }
 }
 
-/// A position for a text of a given length (m) that crosses nothing on a page: first along the lower edge,
-/// then higher up; the lower left corner if there is none.
+/// A position for a text of a given length (m) that crosses no mark on a page: first along the lower edge,
+/// then higher up; the lower left corner if there is no such position.
 fn free_place(page: &Page, length: f64) -> Vec2 {
     let low = page.window.min + Vec2::repeat(1.5 * PLACE_LETTERS);
     let room =

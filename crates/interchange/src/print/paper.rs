@@ -50,7 +50,7 @@ impl Paper {
         Some(self.sheet()? - Vec2::repeat(2.0 * MARGIN))
     }
 
-    /// Distance between neighbouring sheets on the drawing (m).
+    /// Distance on the drawing from the start of one sheet to the start of the next (m).
     pub fn step(self) -> Option<Vec2> {
         Some(self.window()? - Vec2::repeat(OVERLAP))
     }
@@ -85,8 +85,8 @@ fn cell(tile: &Tile, last: [u32; 2]) -> Bounds2 {
     }
 }
 
-/// The sheets of a drawing with its lower left corner at the origin, row by row from the top. Sheets on which
-/// `shows` finds nothing are left out.
+/// The sheets of a drawing with its lower left corner at the origin, row by row from the top. A sheet is left
+/// out if `shows` is `false` for its part of the drawing.
 pub(crate) fn tiles(paper: Paper, size: Vec2, shows: impl Fn(&Bounds2) -> bool) -> Vec<Tile> {
     let (Some(sheet), Some(window), Some(step)) = (paper.sheet(), paper.window(), paper.step())
     else {

@@ -8,16 +8,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// A document that a crash left. As long as this lives no other process is offered it.
+/// A document that a crash left. As long as this value lives, no other process offers the document.
 #[derive(Debug)]
 pub struct Abandoned {
     /// Name of the pattern.
     pub name: String,
-    /// The file it was last saved to.
+    /// The file that the document was last saved to.
     pub source: Option<PathBuf>,
     /// The pattern in the native format, as it was last kept.
     pub text: String,
-    /// The last steps of its history, the newest first.
+    /// The last steps of the document's history, the newest first.
     pub past: Vec<PastStep>,
     /// Time at which the state was kept.
     pub kept: Option<SystemTime>,
@@ -26,11 +26,11 @@ pub struct Abandoned {
     _lock: File,
 }
 
-/// The documents in a folder that crashes left, the newest first. If the newest state of a document
-/// is damaged, the state before is taken. Documents of processes that still run are left out.
+/// The documents in a folder that crashes left, the newest first. If the newest state of a document is
+/// damaged, the state before it is taken. Documents of processes that still run are left out.
 ///
 /// # Errors
-/// The folder is there and cannot be read.
+/// The folder exists but cannot be read.
 pub fn abandoned(folder: &Path) -> io::Result<Vec<Abandoned>> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
@@ -50,7 +50,7 @@ pub fn abandoned(folder: &Path) -> io::Result<Vec<Abandoned>> {
     Ok(found)
 }
 
-/// The document of one process, if that has ended and a state of it is whole.
+/// The document of one process, if the process has ended and a state of the document is undamaged.
 fn take(folder: &Path, id: String) -> Option<Abandoned> {
     let lock = File::options()
         .write(true)
@@ -77,7 +77,8 @@ fn take(folder: &Path, id: String) -> Option<Abandoned> {
 }
 
 impl Abandoned {
-    /// Removes the files of the document: it was recovered and kept anew, or is not wanted.
+    /// Removes the files of the document: call it when the document was recovered and kept anew, or is not
+    /// wanted.
     ///
     /// # Errors
     /// A file cannot be removed.

@@ -13,14 +13,15 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
-/// Least time from one write to the next. With the write itself it stays under a second.
+/// Shortest time between two writes. Together with the write itself it stays under a second.
 const PERIOD: Duration = Duration::from_millis(500);
 
-/// Keeps the unsaved state of a document. Dropping it writes a state that is not written yet.
+/// Keeps the unsaved state of a document on the disk. Dropping the value writes a state that is not written
+/// yet.
 pub struct Recovery {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-    /// Lock file, locked as long as this lives.
+    /// Lock file, locked as long as this value lives.
     lock: Option<File>,
     files: Files,
 }
@@ -43,7 +44,7 @@ enum Wish {
     Clear,
 }
 
-/// The texts of steps that were kept last, by their numbers.
+/// The texts of the steps that were kept last, by the numbers of the steps.
 #[derive(Default)]
 struct KeptTexts {
     /// File of the document; the texts name other files from its folder.
@@ -85,13 +86,13 @@ impl Recovery {
         })
     }
 
-    /// Keeps a state of the document with the last steps of its history, the newest first, within a
-    /// second. It takes the place of one that is not written yet.
+    /// Keeps a state of the document with the last steps of its history, the newest first, within a second.
+    /// The state replaces an earlier one that is not written yet.
     pub fn keep(&self, project: &Project, past: Vec<HistoryStep>) {
         self.wish(Wish::Keep(Box::new(project.clone()), past));
     }
 
-    /// Forgets the states: the document is saved, or its changes are not wanted.
+    /// Removes the kept states: call it when the document is saved, or its changes are not wanted.
     pub fn clear(&self) {
         self.wish(Wish::Clear);
     }
@@ -112,7 +113,7 @@ impl Drop for Recovery {
         self.shared.lock().ends = true;
         self.shared.changed.notify_all();
         if let Some(thread) = self.thread.take() {
-            // A panic there was told on standard error; nothing can be done here.
+            // The thread reported its panic on standard error; no more can be done here.
             let _ = thread.join();
         }
         self.lock = None;
@@ -125,7 +126,8 @@ impl Drop for Recovery {
 }
 
 impl Shared {
-    /// The state, also after a thread panicked that held the lock: every field is valid by itself.
+    /// The locked state. A lock that a panicked thread held is taken all the same: every field is valid by
+    /// itself.
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -143,7 +145,7 @@ impl Shared {
         }
     }
 
-    /// Waits for the next wish; none at the end.
+    /// Waits for the next order to the thread; `None` at the end.
     fn next(&self) -> Option<Wish> {
         let mut state = self.lock();
         loop {
@@ -177,7 +179,7 @@ impl Files {
         file_of(&self.folder, &self.id, ending)
     }
 
-    /// Keeps a state. `texts` are those of the steps that were kept last.
+    /// Keeps a state. `texts` holds the texts of the steps that were kept last.
     fn keep(
         &self,
         project: &Project,
@@ -221,7 +223,7 @@ impl Files {
         self.put(&bytes).map_err(|error| error.to_string())
     }
 
-    /// Writes a state. Whenever the process ends, one of the two states is whole.
+    /// Writes a state. Whenever the process ends, one of the last two states is undamaged.
     fn put(&self, bytes: &[u8]) -> io::Result<()> {
         let written = self.path("writing");
         let mut file = File::create(&written)?;

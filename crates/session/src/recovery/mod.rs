@@ -32,8 +32,8 @@ const LOCK: &str = "lock";
 const NEWEST: &str = "newest";
 const BEFORE: &str = "before";
 
-/// The user's folder for data that this program keeps from one run to the next; none if the
-/// system has none.
+/// The user's folder for data that this program keeps from one run to the next; `None` if the system has no
+/// such folder.
 pub fn state_folder() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "toile")?;
     let folder = folders

@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 pub struct PastStep {
     /// Label of the step.
     pub label: String,
-    /// Bytes that the texts before and after the step have in common at their start, and at their end.
+    /// Number of bytes that the texts before and after the step have in common at their start, and at their
+    /// end.
     same: [usize; 2],
-    /// Text between these common parts before the step.
+    /// Text between the common start and end, before the step.
     before: String,
 }
 
@@ -32,7 +33,8 @@ impl PastStep {
         }
     }
 
-    /// The text before the step, rebuilt from the text after it; none if they do not belong together.
+    /// The text before the step, rebuilt from the text `after` it; `None` if `after` does not belong to the
+    /// step.
     pub(crate) fn text_before(&self, after: &str) -> Option<String> {
         let [start, end] = self.same;
         let tail = after.len().checked_sub(end).filter(|tail| *tail >= start)?;

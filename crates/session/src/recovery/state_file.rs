@@ -20,9 +20,9 @@ pub(super) struct DocumentState {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Head {
     pub name: String,
-    /// The file it was last saved to.
+    /// The file that the document was last saved to.
     pub source: Option<PathBuf>,
-    /// The last steps of its history, the newest first; files of older versions have none.
+    /// The last steps of the document's history, the newest first; empty in files of older versions.
     #[serde(default)]
     pub past: Vec<PastStep>,
 }
@@ -37,7 +37,7 @@ impl DocumentState {
         Ok(bytes)
     }
 
-    /// Reads a state; none if the bytes are not exactly those that were written.
+    /// Reads a state; `None` if the bytes are not exactly those that were written.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
         let (first, body) = bytes.split_at(bytes.iter().position(|&b| b == b'\n')? + 1);
         if first != first_line(body).as_bytes() {
@@ -50,7 +50,7 @@ impl DocumentState {
         })
     }
 
-    /// Reads the state in a file; none if the file is missing or damaged.
+    /// Reads the state in a file; `None` if the file is missing or damaged.
     pub fn read(path: &Path) -> Option<Self> {
         Self::from_bytes(&std::fs::read(path).ok()?)
     }
