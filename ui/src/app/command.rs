@@ -6,9 +6,8 @@
 //! - [`crate::app::command_table::pressed`]: keys, and those that wait while something is typed;
 //! - [`crate::views::pattern::PatternView::keys`] (`input.rs`), [`crate::tools::Tool::takes_keys`]: other
 //!   keys; keys that go to a tool;
-//! - [`crate::app::ToileApp::is_on`] (`bars.rs`): check marks, by hand;
-//! - [`crate::app::ToileApp::canvas_menu`] (`bars.rs`): the menu on the canvas, by hand: a name of no command
-//!   is left out silently;
+//! - [`crate::app::command::UiCommand::on_while`]: check marks;
+//! - [`crate::app::ToileApp::canvas_menu`] (`bars.rs`): the menu on the canvas;
 //! - [`crate::app::ToileApp::ask_find`] (`palette.rs`): commands found by name.
 //!
 //! `docs/GUIDE.md` names the keys.

@@ -2,7 +2,7 @@
 //!
 //! # Decided with
 //! - [`crate::app::panes::Panes`]: what is on show;
-//! - [`crate::app::ToileApp::is_on`] (`bars.rs`): check marks, by hand;
+//! - [`crate::app::command::UiCommand::on`]: check marks;
 //! - [`crate::app::ToileApp::ask_print_choice`] (`print_choice.rs`): papers; a paper that the method
 //!   `paper` here does not know is forgotten.
 

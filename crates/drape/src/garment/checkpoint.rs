@@ -10,7 +10,7 @@
 //! - [`crate::garment::digest::SetupDigest::of`]: another setup is refused;
 //! - [`crate::world::Simulation::laid_out`], [`crate::world::Simulation::restore`]: the layout and state
 //!   taken back;
-//! - [`crate::exact`], [`crate::digest`]: infinite numbers; digests;
+//! - [`toile_fabric::exact`], [`crate::digest`]: infinite numbers; digests;
 //! - [`crate::scene_checkpoint`]: the same for the run of a scene.
 //!
 //! By hand: `SetupDigest::of` lists the settings. No command writes a garment's checkpoint.

@@ -10,7 +10,7 @@
 //!   and taken shorter;
 //! - [`crate::scene_run::SceneRun::apply_edit`], [`crate::world::Simulation::edit_all`]: a failed edit leaves
 //!   the run as it was;
-//! - [`crate::scene_run::TimeSettings`], [`crate::methods::explicit::Explicit::substep_count`],
+//! - [`crate::time_settings::TimeSettings`], [`crate::methods::explicit::Explicit::substep_count`],
 //!   [`crate::pseudo_transient::PseudoTransientContinuation::adapt`]: how long a step is.
 //!
 //! A run that slows down is given up by crate `session`, `pace.rs`.

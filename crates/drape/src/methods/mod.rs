@@ -2,8 +2,7 @@
 //! made.
 //!
 //! # Decided with
-//! - [`crate::methods::newton_solver::Newton::LIMITS`], [`crate::methods::newton_solver::OneSolve::LIMITS`]:
-//!   iterations and residual of Newton's method and of one solve;
+//! - [`crate::methods::implicit::Solver::LIMITS`], in [`crate::methods::newton_solver`]: iterations and residual of Newton's method and of one solve;
 //! - [`crate::method::MethodSettings`]: iterations and substeps that a user may set, by family;
 //! - [`crate::methods::implicit`] (`CONVERGED_RESIDUAL`): how exactly an implicit step is solved;
 //! - [`crate::xpbd::XpbdSettings`]: substeps and iterations of XPBD;
