@@ -8,6 +8,7 @@ mod tokens;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::sync::LazyLock;
 use syn::buffer::{Cursor, TokenBuffer};
 use toile_house::{files_below, root};
 use tokens::{attribute, past_item};
@@ -136,6 +137,8 @@ fn is_distinctive(key: &str) -> bool {
 }
 
 /// Texts of every source outside tests, by path from the root.
+static SOURCES: LazyLock<BTreeMap<String, Texts>> = LazyLock::new(sources);
+
 fn sources() -> BTreeMap<String, Texts> {
     let root = root();
     let mut found = BTreeMap::new();
@@ -188,10 +191,9 @@ fn lists<'s>(
 
 #[test]
 fn keys_of_fields_are_listed_in_few_files() {
-    let sources = sources();
-    for (subject, keys) in subjects(&sources) {
+    for (subject, keys) in subjects(&SOURCES) {
         assert!(keys.len() >= 9, "{subject}: only {keys:?} found");
-        let own = lists(&sources, &keys);
+        let own = lists(&SOURCES, &keys);
         let own = own.filter(|(path, _)| OF_OTHER_FORMATS.iter().all(|(other, _)| other != path));
         let own: Vec<String> = own
             .map(|(path, held)| format!("{path}: {held:?}"))
@@ -207,10 +209,9 @@ fn keys_of_fields_are_listed_in_few_files() {
 
 #[test]
 fn files_of_other_formats_still_have_such_lists() {
-    let sources = sources();
-    let subjects = subjects(&sources);
+    let subjects = subjects(&SOURCES);
     for (file, reason) in OF_OTHER_FORMATS {
-        let lists = |(_, keys): &(_, Words)| lists(&sources, keys).any(|(path, _)| path == file);
+        let lists = |(_, keys): &(_, Words)| lists(&SOURCES, keys).any(|(path, _)| path == file);
         assert!(
             subjects.iter().any(lists),
             "{file} ({reason}) has no such list any more: take it out of OF_OTHER_FORMATS"
