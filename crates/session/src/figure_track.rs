@@ -5,6 +5,7 @@ use std::sync::Arc;
 use toile_body::{Clip, Joint, Mannequin, PlayCommand, PlayError, Player, Pose};
 use toile_drape::{Digest, Motion, Track};
 use toile_geometry::Vec3;
+use toile_interchange::TransformFile;
 
 /// Poses per second of a figure's course (1/s); between two poses joints turn at constant speed.
 const RATE: f64 = 240.0;
@@ -34,6 +35,8 @@ pub(crate) struct FigureTrack {
     course: Clip,
     /// The time of the first pose (s), at most 0.
     start: f64,
+    /// Transform of the skin into the scene.
+    transform: TransformFile,
     digest: u64,
 }
 
@@ -57,6 +60,7 @@ impl FigureTrack {
         body: Arc<Mannequin>,
         clip: Clip,
         asked: &FigureMotion,
+        transform: TransformFile,
         (duration, step): (f64, f64),
     ) -> Result<Course, PlayError> {
         let mut notes = clip_notes(&clip);
@@ -89,12 +93,13 @@ impl FigureTrack {
         if let Some(heading) = &asked.heading {
             turn_along(&mut course, start, heading);
         }
-        let digest = digest(&body, &course, start);
+        let digest = digest(&body, &course, (start, &transform));
         Ok(Course {
             track: Self {
                 body,
                 course,
                 start,
+                transform,
                 digest,
             },
             lead_in: lead_time,
@@ -111,7 +116,11 @@ impl FigureTrack {
 
 impl Track for FigureTrack {
     fn positions(&self, time: f64) -> Vec<Vec3> {
-        self.body.posed_skin(&self.pose(time)).positions
+        let mut positions = self.body.posed_skin(&self.pose(time)).positions;
+        for position in &mut positions {
+            *position = self.transform.apply(*position);
+        }
+        positions
     }
 
     fn digest(&self) -> u64 {
@@ -228,7 +237,7 @@ fn turn_along(course: &mut Clip, start: f64, heading: &Motion) {
     }
 }
 
-fn digest(body: &Mannequin, course: &Clip, start: f64) -> u64 {
+fn digest(body: &Mannequin, course: &Clip, (start, transform): (f64, &TransformFile)) -> u64 {
     let mut digest = Digest::new();
     digest.vectors(&[Vec3::new(start, course.step, 0.0)]);
     digest.vectors(&body.skin().positions);
@@ -237,6 +246,17 @@ fn digest(body: &Mannequin, course: &Clip, start: f64) -> u64 {
         let turns = Joint::ALL.map(|joint| pose.rotation(joint));
         let halves = turns.map(|turn| [turn.imag(), Vec3::repeat(turn.scalar())]);
         digest.vectors(halves.as_flattened());
+    }
+    let TransformFile {
+        translation,
+        rotation,
+        scale,
+        ..
+    } = transform;
+    if (*translation, *rotation, *scale) != ([0.0; 3], [0.0; 3], 1.0) {
+        digest.numbers(translation);
+        digest.numbers(rotation);
+        digest.numbers(&[*scale]);
     }
     digest.value()
 }

@@ -177,7 +177,9 @@ impl Builder<'_> {
                 .place
                 .wrong(place("clip"), what, "give a shorter duration"));
         }
-        let course = FigureTrack::course(body, clip, &asked, (posed.max(0.0), self.file.step));
+        let transform = self.file.objects[index].transform.clone();
+        let span = (posed.max(0.0), self.file.step);
+        let course = FigureTrack::course(body, clip, &asked, transform, span);
         let out_of_range = |error: PlayError| {
             self.place
                 .wrong(place("rate"), error.to_string(), "correct it")

@@ -298,11 +298,19 @@ impl ToileApp {
                 let numbers = FabricFigure::all().filter(|figure| *figure != FabricFigure::Width);
                 let (usual, rare): (Vec<_>, Vec<_>) = numbers.partition(|f| f.is_usual());
                 ui.horizontal_top(|ui| {
-                    for column in usual.chunks(ROWS).chain(rare.chunks(ROWS)) {
+                    for column in usual.chunks(ROWS) {
                         self.figure_rows(ui, (viewed, fabric), column);
                     }
+                    let mut columns = rare.chunks(ROWS).peekable();
+                    while let Some(column) = columns.next() {
+                        ui.vertical(|ui| {
+                            self.figure_rows(ui, (viewed, fabric), column);
+                            if columns.peek().is_none() {
+                                self.compression_choice(ui, viewed, fabric);
+                            }
+                        });
+                    }
                 });
-                self.compression_choice(ui, viewed, fabric);
             });
         });
     }
