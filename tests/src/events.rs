@@ -131,7 +131,8 @@ fn uncounted(pattern: &Pattern) -> Result<String, String> {
 
 /// A number of the document that is not finite, with what stands round it.
 fn not_finite(pattern: &Pattern) -> Option<String> {
-    let printed = format!("{pattern:?}");
+    // Cloth without a limit of stretch has an infinite one.
+    let printed = format!("{pattern:?}").replace("strain_limit: [inf, inf]", "");
     let mut is_text = false;
     let mut before = ' ';
     for (at, c) in printed.char_indices() {
