@@ -59,17 +59,22 @@ fn reach(drafter: &mut Drafter, name: &str) -> egui::Pos2 {
             y if y > low => -1.0,
             _ => return at,
         };
-        drafter.window.hover_at(egui::pos2(at.x, 0.5 * (top + low)));
-        drafter.window.event(egui::Event::MouseWheel {
-            unit: egui::MouseWheelUnit::Line,
-            delta: egui::vec2(0.0, turn),
-            phase: egui::TouchPhase::Move,
-            source: egui::MouseWheelSource::Wheel,
-            modifiers: Modifiers::NONE,
-        });
-        drafter.window.run();
+        turn_wheel(drafter, egui::pos2(at.x, 0.5 * (top + low)), turn);
     }
     panic!("{name:?} is out of reach");
+}
+
+/// Turns the wheel by a line over a place, up or down.
+fn turn_wheel(drafter: &mut Drafter, at: egui::Pos2, turn: f32) {
+    drafter.window.hover_at(at);
+    drafter.window.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: egui::vec2(0.0, turn),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    drafter.window.run();
 }
 
 /// Shows a fabric of the list, ticks a box or presses a button of the table.
@@ -202,24 +207,12 @@ fn a_fabric_of_the_library_is_copied_changed_coloured_renamed_and_kept() {
         ("Bend, weft", "2 * 40"),
         ("Bend, bias", "85.5"),
         ("Friction", "0.5"),
-        ("Stretch limit, warp", "0.06"),
-        ("Stretch limit, weft", "0.1"),
-        ("Curling across", "0.1"),
-        ("Viscosity", "0.02"),
-        ("Bend viscosity", "0.5"),
-        ("Damping", "2"),
-        ("Kept, stretch", "0.05"),
-        ("Kept, fold", "0.2"),
-        ("Relaxation", "4"),
-        ("Rebound", "0.3"),
     ] {
         let steps = drafter.window.state().session().past().len();
         drafter.enter(field, text);
         let done = drafter.window.state().session().past().len();
         assert_eq!(done, steps + 1, "{field}: {}", drafter.status());
     }
-    drafter.enter("Stretch limit, weft", "");
-    choose(&mut drafter, "Compression", "tension-field");
     drafter.enter("Colour", "#203a66");
     press(&mut drafter, "Nap: all pieces point one way");
     drafter.enter("Fabric name", "indigo");
@@ -244,15 +237,6 @@ fn a_fabric_of_the_library_is_copied_changed_coloured_renamed_and_kept() {
         near(bend, wanted);
     }
     assert_eq!((changed.material.friction, changed.nap), (0.5, true));
-    assert_eq!(changed.material.strain_limit, [0.06, f64::INFINITY]);
-    assert_eq!(changed.material.compression, Compression::TensionField);
-    assert_eq!(changed.material.bend_poisson, 0.1);
-    assert_eq!(changed.material.viscosity, 0.02);
-    near(changed.material.bend_viscosity, 0.5e-6);
-    near(changed.material.stiffness_damping, 2e-3);
-    assert_eq!(changed.material.relaxed_fraction, [0.05, 0.2]);
-    assert_eq!(changed.material.relaxation_time, 4.0);
-    assert_eq!(changed.material.restitution, Some(0.3));
     assert_eq!(
         changed.colour,
         [0x20, 0x3a, 0x66].map(|byte| f64::from(byte) / 255.0)
@@ -334,4 +318,55 @@ fn panels_are_cut_from_a_fabric_by_a_tick_and_one_in_use_is_not_removed() {
             .all(|fabric| fabric.name != "poplin")
     );
     undone_exactly(&mut drafter, &before);
+}
+
+#[test]
+fn figures_that_are_rarely_given_are_typed_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut drafter = fabrics(folder.path());
+    press(&mut drafter, "denim (library)");
+    press(&mut drafter, "Copy into the pattern");
+    let before = fabric(&drafter, "denim");
+    for (field, text) in [
+        ("Stretch limit, warp", "0.06"),
+        ("Stretch limit, weft", "0.1"),
+        ("Curling across", "0.1"),
+        ("Viscosity", "0.02"),
+        ("Bend viscosity", "0.5"),
+        ("Damping", "2"),
+        ("Kept, stretch", "0.05"),
+        ("Kept, fold", "0.2"),
+        ("Relaxation", "4"),
+        ("Rebound", "0.3"),
+    ] {
+        let steps = drafter.window.state().session().past().len();
+        drafter.enter(field, text);
+        let done = drafter.window.state().session().past().len();
+        assert_eq!(done, steps + 1, "{field}: {}", drafter.status());
+    }
+    let at = drafter
+        .window
+        .get_by_role_and_label(Role::TextInput, "Rebound");
+    let at = at.rect().center();
+    for _ in 0..10 {
+        turn_wheel(&mut drafter, at, -1.0);
+    }
+    choose(&mut drafter, "Compression", "tension-field");
+    let near =
+        |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * b.abs().max(1e-6), "{a} is not {b}");
+    let changed = fabric(&drafter, "denim");
+    assert_eq!(changed.material.strain_limit, [0.06, 0.1]);
+    assert_eq!(changed.material.compression, Compression::TensionField);
+    assert_eq!(changed.material.bend_poisson, 0.1);
+    assert_eq!(changed.material.viscosity, 0.02);
+    near(changed.material.bend_viscosity, 0.5e-6);
+    near(changed.material.stiffness_damping, 2e-3);
+    assert_eq!(changed.material.relaxed_fraction, [0.05, 0.2]);
+    assert_eq!(changed.material.relaxation_time, 4.0);
+    assert_eq!(changed.material.restitution, Some(0.3));
+    assert_eq!(changed.material.stretch, before.material.stretch);
+    // Empty is without a limit.
+    drafter.enter("Stretch limit, warp", "");
+    let changed = fabric(&drafter, "denim");
+    assert_eq!(changed.material.strain_limit[0], f64::INFINITY);
 }

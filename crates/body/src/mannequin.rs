@@ -12,6 +12,9 @@
 //! - [`crate::describe::Description`], [`crate::attach`]: a body saved and made again; primitives at their
 //!   joints;
 //! - [`crate::fit`], [`crate::scan::Scan`]: fitted to a foreign mesh; a mesh measured.
+//!
+//! Chosen by crate `session` (`mannequin_source.rs`, `bodies.rs`). A garment worn when the body changes: crate
+//! `session` (`garment_edit.rs`, `derived.rs`), hung anew by the window (`app/background_work.rs`, `follow`).
 
 use crate::attach::posed;
 use crate::bones;

@@ -4,7 +4,10 @@
 //! - [`crate::contacts::Contacts::remember_step`]: anchors after a step;
 //! - [`crate::xpbd`] (`friction.rs`, `contact.rs`, `recall`): XPBD: taken from the state and stored;
 //! - crate `reference` (`patches/`: `patch_contacts.rs`, `start`, `finish`): patches: taken from the state and stored;
-//! - [`crate::world`] (`transfer.rs`, `friction`): carried over an edit or a merge;
+//! - [`crate::world`] (`transfer.rs`, `samples`, `carry_triangle_samples`): carried over an edit or a merge;
+//!   another mesh starts without;
+//! - [`crate::kinetic_damping::KineticDamping::advance`], [`crate::submodel`] (`own_friction`): discarded at the end
+//!   of the swing; the share of a region;
 //! - [`crate::contact_refinement`]: kept under other rest shapes;
 //! - [`crate::world::Simulation::reset_motion`]: wiped when motion is reset;
 //! - [`crate::collision`] (`friction_memory.rs`): the same for cloth on cloth.

@@ -1,4 +1,9 @@
 //! What is wrong with an outline: crossings with itself, missing area, stray holes. Exact.
+//!
+//! # Decided with
+//! - [`crate::rings`]: crossings of many rings, edge by edge.
+//!
+//! Called by crates `cut` and `nesting` (`check.rs` of each); crate `pattern`, `check.rs`, calls `rings`.
 
 use crate::polygon::ring_area;
 use crate::{Bounds2, EdgeTree, Location, Polygon, Vec2, orient2d, segments_cross};

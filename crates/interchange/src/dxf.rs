@@ -1,5 +1,8 @@
 //! Lines and words as DXF of release 12, which every cutter and drafting program reads. Millimetres,
 //! y up.
+//!
+//! # Decided with
+//! - [`crate::marker_plot::write_marker_dxf`], [`crate::marker_strokes::Strokes`]: the content, and its layers.
 
 use std::fmt::Write as _;
 use toile_geometry::{Bounds2, Vec2};

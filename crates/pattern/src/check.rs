@@ -5,10 +5,15 @@
 //!   ease and gathers;
 //! - [`crate::orientation::turned_pieces`]: pieces that are sewn inside out;
 //! - [`crate::evaluate::Evaluation::ease`] (`walk/mod.rs`): differences as a seam is walked;
-//! - [`crate::diagnostic::Code`]: the faults.
+//! - [`crate::diagnostic::Code`]: the faults;
+//! - [`toile_geometry::Rings::crossings`], [`crate::plan::face`] (`refuse_crossing`): outlines that cross
+//!   themselves; curves that cross where a panel is traced.
 //!
 //! Shown by the window, `tools/walk.rs`. Gathers of imported patterns: crate `interchange`,
 //! `garmentcode/reader.rs`.
+//! Outlines that cross are refused again by crates `cut` (`check.rs`, `check_shape`), `assembly` (`mesh.rs`,
+//! `planar_error`) and `nesting` (`check.rs`, `check_outline`). Errors stop commands in crate `session`
+//! (`project.rs`, `refuse_faults`).
 
 use crate::evaluate::{Evaluation, Wearer};
 use crate::orientation::turned_pieces;

@@ -9,7 +9,8 @@
 //! - [`crate::live::LiveRun::edit`], [`crate::interactive_run::InteractiveRun::edit`]: when an edit is taken;
 //!   how it is handed on;
 //! - [`toile_drape::GarmentRun`]: the run of the garment, which goes on under other shapes or another mesh;
-//! - [`crate::project::Project::has_same_body`] (`mannequin_source.rs`): whether it is still the same body.
+//! - [`crate::mannequin_source::MannequinSource::of`]: whether it is still the same body; the window asks
+//!   [`crate::project::Project::has_same_body`].
 //!
 //! The window asks (`app/background_work.rs`).
 

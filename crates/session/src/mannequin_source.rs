@@ -11,7 +11,9 @@
 //! - [`toile_measure::Build`]: what is missing is predicted;
 //! - [`toile_body::Mannequin`], [`toile_body::BodyError`]: the body grown; measurements that no body has;
 //! - [`crate::derived`] (`body_error`): its errors with the name of the file;
-//! - [`crate::placed_panels::sleeve_angle`]: how the arms are held.
+//! - [`crate::placed_panels::sleeve_angle`]: how the arms are held;
+//! - [`crate::garment_edit::CannotFollow`], [`crate::derived::Derived::follow`]: a worn garment does not follow
+//!   to another body; its drape is out of date.
 
 use crate::Project;
 use crate::placed_panels::sleeve_angle;

@@ -301,6 +301,9 @@ impl ToileApp {
                     for column in usual.chunks(ROWS) {
                         self.figure_rows(ui, (viewed, fabric), column);
                     }
+                });
+                ui.label(RichText::new("Rarely given").strong());
+                ui.horizontal_top(|ui| {
                     let mut columns = rare.chunks(ROWS).peekable();
                     while let Some(column) = columns.next() {
                         ui.vertical(|ui| {

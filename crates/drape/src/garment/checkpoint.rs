@@ -7,7 +7,7 @@
 //!   which steps; what is forgotten there;
 //! - [`crate::contacts::Contacts::forget`], [`crate::kinetic_damping::SwingWorkspace::forget_contacts`]:
 //!   contacts found anew;
-//! - [`crate::garment::digest::SetupDigest::of`]: another setup is refused;
+//! - [`crate::garment::digest::SetupDigest::check`]: another setup is refused;
 //! - [`crate::world::Simulation::laid_out`], [`crate::world::Simulation::restore`]: the layout and state
 //!   taken back;
 //! - [`toile_fabric::exact`], [`crate::digest`]: infinite numbers; digests;

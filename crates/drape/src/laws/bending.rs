@@ -22,7 +22,9 @@
 //! - [`crate::laws::fold::FoldTerm`], [`crate::incremental_potential::relax`]: folds that stay, viscosity;
 //! - [`crate::xpbd`] (`bending.rs`), crate `reference` (`patches/`: `patch.rs`, `bending_rows`): bending in XPBD, in
 //!   patches;
-//! - crate `reference` (`block_descent.rs`): bending vertex by vertex.
+//! - crate `reference` (`block_descent.rs`): bending vertex by vertex;
+//! - [`crate::material::MaterialLaws::bending_matrix`] (`plate`): the matrix D of a material, from its stiffness
+//!   along warp, weft and bias.
 //!
 //! A fold line of a pattern has no angle at rest: the mesh has edges on it, no more.
 

@@ -13,10 +13,10 @@
 //! - [`crate::evaluate`] (`markers.rs`): parts it names that are gone;
 //! - [`crate::document::cloth_record::ClothRecord`]: the cloth as journals write it.
 //!
-//! Shown in the window (`app/marker_cloth.rs`, `app/marker_laying.rs`, `app/marker_rules.rs`); searched for
-//! by crate `marker`.
-//! Searched for by crate `marker` (`options.rs`, `items.rs`); turns tried and judged by crate `nesting` (`turns.rs`,
-//! `rules.rs`); by hand only overlaps are watched (`clashes.rs`).
+//! Shown in the window (`app/marker_cloth.rs`, `app/marker_laying.rs`, `app/marker_rules.rs`). Searched for by crate
+//! `marker` (`options.rs`, `items.rs`); turns tried and judged by crate `nesting` (`turns.rs`, `rules.rs`). By hand,
+//! overlaps and pieces beyond the fabric are watched (`clashes.rs`), and drops on pieces or flaws (crate `marker`,
+//! `butting.rs`).
 
 use super::cloth_record::ClothRecord;
 use super::{ClothSettings, MatchedMarks, Panel, Pattern, PieceRule, RuledPieces};
