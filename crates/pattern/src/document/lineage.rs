@@ -148,17 +148,7 @@ impl Panel {
     /// Whether operations move parts of the panel away from their drawn places.
     pub fn is_altered(&self) -> bool {
         let mut kinds = self.operations.iter().map(|operation| &operation.kind);
-        let moves = |kind: &OperationKind| match kind {
-            OperationKind::Pivot { .. }
-            | OperationKind::Spread { .. }
-            | OperationKind::Pleat { .. } => true,
-            OperationKind::Dart { .. }
-            | OperationKind::Diamond { .. }
-            | OperationKind::Fold { .. }
-            | OperationKind::Split { .. }
-            | OperationKind::Insert { .. } => false,
-        };
-        kinds.any(moves)
+        kinds.any(OperationKind::moves_parts)
     }
 
     /// Whether the panel is split into other panels, which are cut instead of it.

@@ -504,6 +504,18 @@ impl OperationKind {
         self.into()
     }
 
+    /// Whether the operation moves parts of the panel from where they were drawn.
+    pub(crate) fn moves_parts(&self) -> bool {
+        match self {
+            Self::Pivot { .. } | Self::Spread { .. } | Self::Pleat { .. } => true,
+            Self::Dart { .. }
+            | Self::Diamond { .. }
+            | Self::Fold { .. }
+            | Self::Split { .. }
+            | Self::Insert { .. } => false,
+        }
+    }
+
     /// Whether the operation may redraw an edge to true darts: it is a trued dart, or a pivot.
     pub fn may_true(&self) -> bool {
         matches!(self, Self::Dart { trued: true, .. } | Self::Pivot { .. })
