@@ -6,7 +6,7 @@
 //! - [`crate::orientation::turned_pieces`]: pieces that are sewn inside out;
 //! - [`crate::evaluate::Evaluation::ease`] (`walk/mod.rs`): differences as a seam is walked;
 //! - [`crate::diagnostic::Code`]: the faults;
-//! - [`toile_geometry::Rings::crossings`], [`crate::plan::face`] (`refuse_crossing`): outlines that cross
+//! - [`toile_geometry::Rings::crossings`], [`crate::plan`] (`face.rs`, `refuse_crossing`): outlines that cross
 //!   themselves; curves that cross where a panel is traced.
 //!
 //! Shown by the window, `tools/walk.rs`. Gathers of imported patterns: crate `interchange`,
