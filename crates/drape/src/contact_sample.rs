@@ -25,6 +25,7 @@ pub struct ContactSample {
 
 impl ContactSample {
     /// Its position (m).
+    #[inline]
     pub fn position(&self, x: &[Vec3]) -> Vec3 {
         let [a, b, c] = self.vertices.map(|v| x[v as usize]);
         a * self.weights[0] + b * self.weights[1] + c * self.weights[2]

@@ -40,6 +40,7 @@ struct StretchTerm {
 }
 
 impl StretchTerm {
+    #[inline]
     fn viscous_stress(&self, strain: [f64; 3]) -> ([f64; 3], f64) {
         let d = [0, 1, 2].map(|k| strain[k] - self.start[k]);
         let s = viscous_stress(self.viscous, d);
@@ -223,6 +224,7 @@ impl IncrementalPotential {
     }
 
     /// The Hessian of bending during the step.
+    #[inline]
     pub fn bending<'a>(&'a self, system: &'a System) -> &'a ScalarMatrix {
         self.bending.as_ref().unwrap_or(&system.rest.bending)
     }

@@ -54,6 +54,7 @@ impl Air {
     pub const SEA_LEVEL: f64 = 1.204;
 
     /// Whether it exerts a force on triangles.
+    #[inline]
     pub fn acts(&self) -> bool {
         self.density > 0.0 && (self.normal > 0.0 || self.tangential > 0.0)
     }

@@ -67,6 +67,7 @@ pub struct ContactPlane {
 
 impl ContactPlane {
     /// Depth of a point below the offset surface, to first order (m).
+    #[inline]
     pub fn depth_of(&self, point: Vec3) -> f64 {
         self.depth - self.gradient.dot(&(point - self.point))
     }
@@ -100,6 +101,7 @@ const AT_LIMIT: f64 = 0.99;
 
 impl ContactLaw {
     /// Energy (J), force (N) and stiffness (N/m) of the normal spring at a depth (m).
+    #[inline]
     pub fn normal_spring(&self, depth: f64) -> [f64; 3] {
         let normal = self.normal;
         let (soft, hard) = (depth.max(0.0), (depth - self.hard_from).max(0.0));

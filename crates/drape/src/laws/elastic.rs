@@ -30,6 +30,7 @@ impl ElasticLaw {
 
     /// Secant stiffness (N/m): the force is this times the gap. Used as an isotropic Hessian it
     /// majorises the true one, so a Newton step never overshoots.
+    #[inline]
     pub fn secant(&self, gap: Vec3) -> f64 {
         let length = gap.norm();
         if self.stiffness * length <= self.largest_force {

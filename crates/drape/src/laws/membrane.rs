@@ -109,6 +109,7 @@ impl MembraneElement {
     }
 
     /// The tangents f_u and f_v.
+    #[inline]
     pub fn tangents(&self, x: [Vec3; 3]) -> [Vec3; 2] {
         let [a, b] = [self.warp, self.weft];
         [
@@ -219,6 +220,7 @@ pub fn green_strain([fu, fv]: [Vec3; 2]) -> [f64; 3] {
 }
 
 /// The positive semidefinite part of a symmetric 2x2 stress given as uu, vv, uv.
+#[inline]
 fn tension_part([uu, vv, uv]: [f64; 3]) -> [f64; 3] {
     let mean = 0.5 * (uu + vv);
     let half = 0.5 * (uu - vv);

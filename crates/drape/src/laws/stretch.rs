@@ -79,6 +79,7 @@ impl MembraneLaw {
     }
 
     /// Whether the law is linear, so that XPBD and explicit steps in patches use `stiffness` only.
+    #[inline]
     pub fn is_linear(&self) -> bool {
         let &Self {
             stiffness: _,
@@ -90,6 +91,7 @@ impl MembraneLaw {
     }
 
     /// Contribution of hardening and limit along one direction: stress (N/m), energy (J/m2) and stiffness (N/m).
+    #[inline]
     fn beyond_line(&self, direction: usize, strain: f64) -> (f64, f64, f64) {
         let c = self.stiffness[direction];
         let e = strain.max(0.0);
