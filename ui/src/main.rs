@@ -3,10 +3,13 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use toile_session::{RealtimeRun, Silent, write_atomically};
+use toile_session::{RealtimeRun, Silent, start_log, write_atomically};
 use toile_ui::{Beginning, FigureTask, FigureWindow, ToileApp};
 
 fn main() -> ExitCode {
+    if let Err(error) = start_log() {
+        return fail(&error);
+    }
     match FigureTask::read(std::env::args_os().skip(1)) {
         Ok(None) => open_document(),
         Ok(Some(task)) => show_figure(&task).unwrap_or_else(|error| fail(&error)),

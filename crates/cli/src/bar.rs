@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use toile_session::Watcher;
+use toile_session::{Watcher, is_logging};
 
 /// Exit status of a program that was interrupted.
 const INTERRUPTED: i32 = 130;
@@ -25,9 +25,12 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// A bar at its start.
+    /// A bar at its start. Beside a log there is none, which its lines would tear apart.
     pub fn new() -> Self {
-        let bar = ProgressBar::new(STEPS as u64);
+        let bar = match is_logging() {
+            true => ProgressBar::hidden(),
+            false => ProgressBar::new(STEPS as u64),
+        };
         let style = ProgressStyle::with_template("{bar:36} {percent:>3} %  {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style);

@@ -23,10 +23,14 @@ use clap::Parser;
 use output::{Failure, Made, Output};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use toile_session::start_log;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let output = Output::new(arguments.json);
+    if let Err(words) = start_log() {
+        return output.fail(&Failure::bad_input(words));
+    }
     let outcome = run(arguments.task.unwrap_or_else(sample), &output);
     match outcome {
         Ok(made) => output.finish(made),

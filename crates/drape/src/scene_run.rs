@@ -302,6 +302,7 @@ impl SceneRun {
         let report = self.method.advance(system, state, self.settings.step)?;
         self.split_steps += usize::from(report.pieces > 1);
         self.steps += 1;
+        tracing::debug!(step = self.steps, ?report, "step of the scene");
         self.is_renewed = false;
         if self.steps.is_multiple_of(STEPS_TO_REFINE) {
             self.refine();

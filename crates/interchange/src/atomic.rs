@@ -87,6 +87,7 @@ impl Staged {
         let Self { file, target } = self;
         file.persist(&target)
             .map_err(|error| FileError::from_io("write", &target, &error.error))?;
+        tracing::debug!(file = %target.display(), "file written");
         sync_folder_of(&target);
         Ok(())
     }

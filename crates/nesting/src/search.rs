@@ -346,6 +346,12 @@ fn run_islands(
 ) -> Result<Layout, NestingError> {
     let mut islands = islands(job, meter.search);
     let threads = threads(meter.search);
+    tracing::info!(
+        items = job.items.len(),
+        islands = islands.len(),
+        threads,
+        "search begins"
+    );
     let mut told = || (control.progress)(BEGUN);
     let begin = |island: &mut Island<'_>| {
         let limit = Limit {
@@ -361,6 +367,8 @@ fn run_islands(
     share(&mut islands);
     let mut last = report_progress(&islands, BEGUN, meter, control);
     for (part, press) in [(EXPLORING, false), (1.0, true)] {
+        let phase = if press { "compression" } else { "exploration" };
+        tracing::info!(phase, length = last.length, "phase of the search");
         loop {
             let most = islands.iter().map(Island::queries).max().unwrap_or(0);
             if meter.stops(part) || most >= meter.share(part) {
@@ -370,6 +378,8 @@ fn run_islands(
             epoch(&mut islands, meter, (part, press), &mut again);
             share(&mut islands);
             last = report_progress(&islands, last, meter, control);
+            let (evaluations, length) = (last.evaluations, last.length);
+            tracing::debug!(phase, evaluations, length, "islands exchanged");
             let now = islands.iter().map(Island::queries).max().unwrap_or(0);
             if now == most {
                 // No island made another query.
@@ -379,6 +389,11 @@ fn run_islands(
     }
     let best = best_of(&islands).map(|k| islands.swap_remove(k));
     let mut best = best.ok_or(NestingError::Cancelled)?;
+    tracing::info!(
+        phase = "polishing",
+        length = last.length,
+        "phase of the search"
+    );
     best.polish(&Limit {
         queries: u64::MAX,
         stop: &|| meter.stops(POLISHING),

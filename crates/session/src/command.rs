@@ -22,6 +22,7 @@ use crate::interactive_run::read_inputs;
 use crate::{Export, PanelOrigin, PastStep, Quality};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use strum::IntoStaticStr;
 use toile_body::{Figure, PrimitiveEdit};
 use toile_drape::Input;
 use toile_measure::Measurements;
@@ -33,8 +34,9 @@ const LAYING: f64 = 7.0;
 const WRITING: f64 = 7.0;
 
 /// A command to a session. The journal is a list of commands.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, IntoStaticStr)]
 #[serde(rename_all = "snake_case", tag = "command")]
+#[strum(serialize_all = "snake_case")]
 pub enum Command {
     /// Replaces the project by a pattern read from a file; the format is recognised from the content.
     OpenPattern {

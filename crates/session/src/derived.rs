@@ -193,6 +193,7 @@ impl Derived {
         if let Some(draft) = &self.draft {
             return draft.clone();
         }
+        tracing::debug!("draft recomputed");
         let (mut draft, _) = self.evaluation(project).draft();
         let chosen = project.fabric.as_ref();
         if let Some(fabric) = chosen.and_then(|choice| choice.fabric(&project.pattern)) {
@@ -206,6 +207,7 @@ impl Derived {
         if let Some(diagnostics) = &self.diagnostics {
             return diagnostics.clone();
         }
+        tracing::debug!("diagnostics recomputed");
         let (_, diagnostics) = checked(&self.evaluation(project));
         self.diagnostics.insert(Arc::new(diagnostics)).clone()
     }
@@ -246,6 +248,7 @@ impl Derived {
         let kept = match self.mannequin.take() {
             Some(kept) if kept.source == source => kept,
             _ => {
+                tracing::debug!("mannequin recomputed");
                 let mannequin = source.make().map_err(|error| body_error(project, error))?;
                 CachedMannequin {
                     source,
@@ -267,6 +270,7 @@ impl Derived {
             return Ok(finished_markers.clone());
         }
         let parts = self.sound_parts(project)?;
+        tracing::debug!("markers recomputed");
         let options = NestOptions {
             cloth: ClothSettings {
                 width: project.width,
@@ -303,6 +307,7 @@ impl Derived {
         project: &Project,
         put_on: &PutOn,
     ) -> Result<Arc<Outfit>, SessionError> {
+        tracing::debug!("outfit recomputed");
         let mannequin = self.mannequin(project)?;
         let (outfit, notes) = assembled(put_on, &mannequin, project.quality.edge_length())?;
         self.assembly_notes = notes;
@@ -356,6 +361,7 @@ impl Derived {
         if let Some(drape) = self.drape.as_ref().filter(|drape| drape.inputs == inputs) {
             return Ok(drape.clone());
         }
+        tracing::debug!("drape recomputed");
         let made = match drape(self.job(project)?, inputs, watcher) {
             Err(error) if error.has_left_body() => {
                 self.drape_otherwise(project, inputs, watcher)?

@@ -186,7 +186,14 @@ impl Session {
         if matches!(command, Command::OpenPattern { .. }) {
             self.timing.restart();
         }
+        let name: &str = (&command).into();
+        tracing::info!(command = name, "command begins");
         let events = self.perform(&command, watcher)?;
+        tracing::info!(
+            command = name,
+            seconds = start.elapsed().as_secs_f64(),
+            "command done"
+        );
         if let Some(stage) = command.stage() {
             self.timing.add(stage, start);
         }

@@ -199,7 +199,7 @@ impl ToileApp {
     fn status_words(&self, palette: &Palette) -> (String, Color32) {
         if !self.notice.text.is_empty() {
             let colour = match self.notice.tone {
-                Tone::WorkEvent => palette.ink,
+                Tone::Information => palette.ink,
                 Tone::Warning => palette.warning,
                 Tone::Fault => palette.fault,
             };

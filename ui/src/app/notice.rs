@@ -5,7 +5,7 @@
 pub enum Tone {
     /// Information, as on a success.
     #[default]
-    WorkEvent,
+    Information,
     /// Warning: the result is probably not intended.
     Warning,
     /// Failure; the text gives the reason.
@@ -29,13 +29,13 @@ impl Notice {
 
     /// Whether the notice is mere information.
     pub fn is_news(&self) -> bool {
-        self.tone == Tone::WorkEvent
+        self.tone == Tone::Information
     }
 
     /// Makes a notice of information.
     pub fn news(text: impl Into<String>) -> Self {
         Self {
-            tone: Tone::WorkEvent,
+            tone: Tone::Information,
             text: text.into(),
         }
     }

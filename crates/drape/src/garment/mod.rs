@@ -268,13 +268,33 @@ impl GarmentRun {
     /// # Errors
     /// Seams that do not close, numbers that are not finite, no progress; the state is then the last good one.
     pub fn advance(&mut self) -> Result<Progress, DrapeError> {
-        match self.stage.stage() {
+        let stage = self.stage.stage();
+        match stage {
             Stage::Sewing => self.sew()?,
             Stage::Swinging => self.swing()?,
             Stage::Settling => self.step_to_rest()?,
-            Stage::Finished => {}
+            Stage::Finished => return Ok(self.progress()),
         }
-        Ok(self.progress())
+        let progress = self.progress();
+        self.log(stage, &progress);
+        Ok(progress)
+    }
+
+    /// Tells the log about a step that was taken in a stage.
+    fn log(&self, taken: Stage, progress: &Progress) {
+        let Progress {
+            stage,
+            step,
+            gap,
+            residual,
+            ..
+        } = *progress;
+        let mesh = self.level + 1;
+        if stage == taken {
+            tracing::debug!(?stage, mesh, step, gap, residual, "step of the garment");
+        } else {
+            tracing::info!(?stage, mesh, after = ?taken, residual, "stage of the garment");
+        }
     }
 
     /// Sets the progress to a share of the present level. A level takes about a quarter of the time of the next.

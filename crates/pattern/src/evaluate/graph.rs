@@ -15,10 +15,17 @@ impl Evaluation {
     pub fn update(&mut self, pattern: &Pattern, wearer: impl Into<Wearer>) -> Update {
         let known = self.nodes.len();
         let dirty = self.take_changes(pattern, Some(wearer.into()));
-        Update {
+        let update = Update {
             met: self.nodes.len() - known,
             ..self.recompute(dirty)
-        }
+        };
+        tracing::debug!(
+            values = self.nodes.len(),
+            recomputed = update.computed,
+            changed = update.changed,
+            "pattern evaluated"
+        );
+        update
     }
 
     /// Brings these points and all values that they depend on up to date with a pattern; other values stay
