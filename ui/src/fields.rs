@@ -12,13 +12,14 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use toile_pattern::Evaluation;
 
-/// Largest number of names that are proposed.
+/// Largest number of names that are proposed to complete a typed text.
 const PROPOSED: usize = 8;
 /// Share of a field's width that its text gets, if a value stands beside the text (1).
 const TEXT_SHARE: f32 = 0.5;
-/// Height that words under a field need above the lower edge of the window, and least width of these words
-/// (pixels).
+/// Height that words under a field need above the lower edge of the window; with less room they stand above
+/// the field (pixels).
 const UNDER: f32 = 64.0;
+/// Width that words under a field can take even if the field is narrower (pixels).
 const MIN_WIDTH_UNDER: f32 = 270.0;
 
 /// Grey words inside a field, beside its text. They use the room of the field, so that no widget moves when

@@ -34,8 +34,9 @@ use toile_pattern::{
     PartId, Want,
 };
 
-/// Width of the inspector, and its distance from the edge of the table (pixels).
+/// Width of the inspector without its frame (pixels).
 const WIDTH: f32 = INSPECTOR_ROOM - FRAME - 2.0 * MARGIN;
+/// Distance of the inspector from the edge of the table (pixels).
 const MARGIN: f32 = 10.0;
 /// Width of the inspector's frame, both sides together (pixels).
 const FRAME: f32 = 14.0;

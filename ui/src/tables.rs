@@ -28,7 +28,7 @@ use line_field::{is_entered, line_field};
 use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
 use toile_pattern::{Number, Pattern, SizeId, VariableId, Want, plan};
 
-/// Initial measurements of a size.
+/// Measurements that the first size of a pattern gets, with the wearer's values.
 const FIRST: &[&str] = &[
     "height",
     "bust",
@@ -44,18 +44,20 @@ const FIRST: &[&str] = &[
     "wrist",
 ];
 
-/// Width of the value of a measurement, and least width of the name (pixels).
+/// Width of the value of a measurement (pixels).
 const VALUE: f32 = 84.0;
+/// Least width of the name of a measurement (pixels).
 const MIN_LABEL_WIDTH: f32 = 100.0;
 
-/// Widths of the name of a variable and of the formula (pixels).
+/// Width of the name of a variable (pixels).
 const NAME: f32 = 150.0;
+/// Width of the formula of a variable (pixels).
 const FORMULA: f32 = 320.0;
 
 /// Width reserved for the button beside the field of a new variable (pixels).
 const ADD_BUTTON: f32 = 120.0;
 
-/// Largest number of measurements that are proposed.
+/// Largest number of measurements that are proposed for a typed name.
 const PROPOSED: usize = 5;
 
 impl ToileApp {
@@ -334,7 +336,7 @@ impl ToileApp {
         self.edit(planned.map(|(edits, _)| edits), "Add size");
     }
 
-    /// Adds a measurement to every size, with the wearer's value if there is one.
+    /// Adds a measurement to every size, with the wearer's value; if there is none, with 0.5 (m or rad).
     fn add_measurement(&mut self, name: &str) {
         let wearer = self.session.project().body_measurements();
         let value = wearer.get(name).unwrap_or(0.5);
@@ -517,7 +519,7 @@ fn has_been_led_to(ui: &Ui, field: Id) -> bool {
     has_keys
 }
 
-/// Shows a label in a column of a least width.
+/// Shows a label in a column that is at least `width` wide (pixels).
 fn named(ui: &mut Ui, width: f32, words: RichText) -> egui::Response {
     let label = ui.scope(|ui| {
         ui.set_min_width(width);

@@ -16,8 +16,8 @@ use toile_session::Project;
 /// Offset of pasted points and curves from their originals, right and down (m).
 const ASIDE: f64 = 0.02;
 
-/// Distance from the existing drawing to the origin of a new sheet (m); a piece may be drawn to the left
-/// of it.
+/// Distance from the existing drawing to the origin of a new sheet (m); a piece can be drawn to the left of
+/// it.
 const SHEETS_APART: f64 = 0.4;
 
 /// Gap between panels and their duplicate (m).
@@ -221,7 +221,7 @@ impl ToileApp {
         let parts = self.selected_parts();
         let is_whole = |part: &PartId| matches!(part, PartId::Panel(_) | PartId::Sheet(_));
         let pasted = match parts.iter().all(is_whole) {
-            // Beside the panels as they are displayed, with their mirrored halves.
+            // The copies go beside the panels and their mirrored halves, as these are displayed.
             true => plan::copy(&self.base, &parts).and_then(|fragment| {
                 let scene = self.whole_scene();
                 let bounds = on_table((&scene, &self.view.table_layout), |id| parts.contains(&id));
@@ -238,7 +238,8 @@ impl ToileApp {
         self.take_pasted(pasted, "Duplicate");
     }
 
-    /// Distance to the right by which a rectangle must be moved to overlap nothing (m).
+    /// Distance to the right (m) by which the rectangle `bounds` must be moved to overlap no panel and no
+    /// sheet.
     fn free_aside(&self, scene: &Scene, bounds: &Bounds2) -> f64 {
         let mut panels = on_table((scene, &self.view.table_layout), |_| true);
         panels.sort_by(|a, b| a.min.x.total_cmp(&b.min.x));
@@ -247,7 +248,7 @@ impl ToileApp {
             let is_beside = panel.min.y <= bounds.max.y && bounds.min.y <= panel.max.y;
             let is_under = panel.min.x < bounds.max.x + aside + BESIDE
                 && bounds.min.x + aside < panel.max.x + BESIDE;
-            // A panel that only touches the candidate place makes it move to the right, too.
+            // A panel that only touches the place tried so far moves it to the right, too.
             if is_beside && is_under && panel.max.x > bounds.max.x {
                 aside = panel.max.x + BESIDE - bounds.min.x;
             }
@@ -359,8 +360,8 @@ impl ToileApp {
     }
 }
 
-/// Bounding rectangles on the table (m): of panels for which, or for whose sheet, `wanted` holds; and of
-/// sheets without panels for which it holds.
+/// Bounding rectangles on the table (m): of panels that are `wanted` or whose sheet is, and of `wanted`
+/// sheets without panels.
 fn on_table(
     (scene, table_layout): (&Scene, &TableLayout),
     wanted: impl Fn(PartId) -> bool,

@@ -1,7 +1,7 @@
 //! Work on other threads: the mannequin and the meshed garment are made from a snapshot, then the drape
 //! runs live. A draped garment follows the edits of its pattern; the change to its simulation is computed
-//! on another thread too. If the garment cannot follow, because its wearer, its cloth or a garment worn
-//! with it changed, it is draped anew by itself; of several changes meanwhile only the newest counts.
+//! on another thread too. If the garment cannot follow, because its wearer, its cloth or a garment worn with
+//! it changed, it is draped anew automatically; of several changes meanwhile only the newest counts.
 //!
 //! # Decided with
 //! - [`toile_session::LiveRun`]: the run;
@@ -36,7 +36,7 @@ pub struct BackgroundWork {
     edit: Option<Receiver<Made<Result<GarmentEdit, CannotFollow>>>>,
     run: Option<LiveRun>,
     last: Option<Moment>,
-    /// Garment that is simulated, with the last edit that was applied to it.
+    /// The garment that is simulated, as the last edit left it.
     given: Option<Arc<GarmentJob>>,
     /// Project and revision that the garment was last made for or compared with.
     compared: Option<(Project, u64)>,
@@ -125,7 +125,7 @@ impl From<&LiveFrame> for Moment {
 pub enum WorkEvent {
     /// The session has its mannequin now.
     Body,
-    /// The cloth on show must be removed: it may not fit the present body any more.
+    /// The cloth on show must be removed: possibly it no longer fits the present body.
     Undressed,
     /// The garment is meshed and placed round its mannequin; the drape begins.
     Begun(Arc<GarmentJob>),
@@ -273,7 +273,7 @@ impl BackgroundWork {
         !works && self.standstill.is_some()
     }
 
-    /// Whether anything may change without user input.
+    /// Whether anything can change without user input.
     pub fn is_busy(&self) -> bool {
         let works = self.body.is_some() || self.garment.is_some() || self.edit.is_some();
         works || self.is_moving()
@@ -486,8 +486,8 @@ fn on_thread<T: Send + 'static>(
     receiver
 }
 
-/// Takes the result that a thread has sent, if any, and stores its derived values in the session. A thread
-/// that ended without a result counts as failed.
+/// Takes the result that a thread has sent, if any, and stores in `session` the values that the thread
+/// derived. A thread that ended without a result counts as failed.
 fn take<T>(
     receiver: &mut Option<Receiver<Made<T>>>,
     session: &mut Session,

@@ -19,7 +19,7 @@ use egui::{Align, Button, Color32, ComboBox, Layout, RichText, Ui};
 use toile_pattern::{Severity, Want};
 use toile_session::Command;
 
-/// Width that a message leaves free for the hint beside it (pixels).
+/// Width of the status line that a message leaves free for the hint beside it (pixels).
 const HINT_WIDTH: f32 = 160.0;
 
 impl ToileApp {
@@ -116,7 +116,7 @@ impl ToileApp {
         let words = |name: &Option<String>| name.clone().unwrap_or_else(|| "the wearer's".into());
         let mut chosen = project.size_name().map(str::to_owned);
         let before = chosen.clone();
-        // Right to left: the label is added after the list, so that it stands before it.
+        // The row is filled from right to left: the label is added after the list, and so stands left of it.
         let choice = ComboBox::from_id_salt("size")
             .selected_text(words(&chosen))
             .width(70.0)

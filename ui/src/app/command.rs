@@ -112,7 +112,8 @@ impl UiCommand {
         }
     }
 
-    /// This command, with a check mark in its menu while a part of the view is visible, which `on` tells.
+    /// This command, with a check mark in its menu while `on` says that the part of the view that the command
+    /// toggles is visible.
     pub(super) const fn on_while(self, on: fn(&ToileApp) -> bool) -> Self {
         Self {
             on: Some(on),
@@ -143,7 +144,7 @@ pub(super) fn always(_: &ToileApp) -> bool {
     true
 }
 
-/// A keyboard shortcut in words, as `Ctrl+S`; keys for signs are shown as the sign.
+/// A keyboard shortcut in words, as `Ctrl+S`; the key of an ASCII sign is shown as the sign.
 pub fn shortcut_words(context: &egui::Context, key: &egui::KeyboardShortcut) -> String {
     let words = context.format_shortcut(key);
     let (name, sign) = (key.logical_key.name(), key.logical_key.symbol_or_name());

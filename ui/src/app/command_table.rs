@@ -27,8 +27,8 @@ pub struct KeysTaken {
     pub text: bool,
     /// The focused text field is empty: Undo and Redo still go to the window.
     pub empty: bool,
-    /// A tool is in hand: takes the keys that begin a number; letters and digits of view commands are held
-    /// back.
+    /// A tool is in hand: takes the keys that begin a number; view commands whose key is a letter or digit
+    /// are not performed.
     pub tool: bool,
     /// A seam is walked: takes Home and End, which move along the seam.
     pub walks: bool,
@@ -49,7 +49,7 @@ fn undoes(key: Key) -> bool {
     matches!(key, Key::Y | Key::Z)
 }
 
-/// Whether a key types no text.
+/// Whether a key is one of F1 to F12, which type no text.
 pub(super) fn is_function(key: Key) -> bool {
     use Key::{F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12};
     matches!(
@@ -88,7 +88,7 @@ fn begins_number(key: Key) -> bool {
 pub struct Pressed {
     /// Commands to perform.
     pub commands: Vec<&'static UiCommand>,
-    /// A view command that was held back because a tool is in hand.
+    /// A view command that is not performed, because its key is a letter or digit and a tool is in hand.
     pub held: Option<&'static UiCommand>,
 }
 

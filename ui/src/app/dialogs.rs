@@ -47,7 +47,7 @@ pub enum Dialog {
     Insert(FileChoice),
     /// The file of the fabric that the garment is cut from.
     Fabric(FileChoice),
-    /// The measurements or the mannequin of the wearer.
+    /// The file with the measurements or the mannequin of the wearer.
     Wearer(FileChoice),
     /// The pattern of a garment that is worn over or under this one.
     Wear(WornWhere, FileChoice),
@@ -61,7 +61,7 @@ pub enum Dialog {
     Recover,
     /// Search for a command by name: the typed text, and the index of the chosen result.
     Find(String, usize),
-    /// Glossary: the typed text.
+    /// The glossary: the text that is searched for in it.
     Words(String),
 }
 
@@ -148,8 +148,8 @@ impl ToileApp {
         }
     }
 
-    /// Asks before unsaved changes are lost, and closes the window only when files have been written; a
-    /// second request to close stops the writing.
+    /// Asks before unsaved changes are lost, and closes the window only when no export or print is being
+    /// written; a second request to close stops the writing.
     pub(crate) fn guard_closing(&mut self, context: &Context) {
         let closing = context.input(|input| input.viewport().close_requested());
         if closing && !self.closes && self.is_unsaved() {

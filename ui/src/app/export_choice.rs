@@ -17,14 +17,14 @@ pub struct ExportChoice {
     pub marker: Option<String>,
     /// Folder of the files, as typed.
     pub folder: String,
-    /// Existing files that would be replaced, once the user was warned; a second confirmation replaces
-    /// them.
+    /// Existing files that the export would replace, and that the user was told of; empty before. If the user
+    /// confirms once more, they are replaced.
     pub replaced: Vec<PathBuf>,
     /// Error to show in the dialog.
     pub fault: String,
 }
 
-/// Formats in groups, each with the label of its box.
+/// Groups of formats, each format with the label of its tick box.
 const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
     (
         "Garment",
@@ -122,8 +122,8 @@ impl ExportChoice {
     }
 }
 
-/// Whether an export in a format may write a file of this name: the format's usual name, or a variant of it
-/// for a fabric or a layer.
+/// Whether an export in a format can write a file of this name: the format's usual name, or that name with
+/// the number of a fabric, or the name of a layer.
 fn is_written(format: ExportFormat, path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         return false;

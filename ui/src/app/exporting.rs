@@ -33,7 +33,7 @@ pub struct ExportMemory {
     written: Vec<PathBuf>,
 }
 
-/// Largest number of files that the message names.
+/// Largest number of files that the message after an export names; of more files it tells the number.
 const NAMED: usize = 3;
 
 impl ToileApp {

@@ -142,8 +142,8 @@ fn quality_words(quality: Quality) -> &'static str {
     }
 }
 
-/// Message at the end of a drape: `state`, then the headline of the verdict if there is one; the headline
-/// alone if the garment is not as ordered.
+/// Message at the end of a drape: `state`, then the headline of the verdict if there is one; only the
+/// headline if the verdict is that the result is not what was asked for.
 pub(super) fn ended_words(verdict: &Verdict, state: String) -> String {
     let headline = verdict.headline();
     match (headline.is_empty(), verdict.is_sound()) {

@@ -6,23 +6,25 @@ use egui::{Panel, Ui};
 
 /// Initial share of the window's width for the 3D view: alone, and with the tables under it.
 const GARMENT_SHARES: [f32; 2] = [0.245, 0.33];
-/// Least height of the marker, and of the pattern above it if there is room for both (pixels).
+/// Least height of the marker (pixels).
 const MIN_MARKER_HEIGHT: f32 = 140.0;
+/// Least height of the pattern above the marker, if there is room for both (pixels).
 const MIN_PATTERN_HEIGHT: f32 = 170.0;
-/// Least width of a window in which the tables stand beside the pattern, unless the user moved them
+/// Least width of the window at which the tables stand beside the pattern if the user has not moved them
 /// (pixels).
 const WIDE: f32 = 1600.0;
-/// Initial height of the tables below the pattern (pixels), and under the garment (share of the height).
+/// Initial height of the tables below the pattern (pixels).
 const TABLES: f32 = 210.0;
+/// Initial share of the height for the tables, if they stand under the garment (1).
 const TABLES_SHARE: f32 = 0.45;
-/// Width of the row of buttons above the 3D view (pixels): least initial width of the view, if the window
-/// has room for it.
+/// Width of the row of buttons above the 3D view (pixels). The view is at first at least as wide, if the
+/// window has room for it.
 const GARMENT_ROW: f32 = 320.0;
 /// Largest share of the window's width for the 3D view.
 const GARMENT_MOST: f32 = 0.6;
 
 impl ToileApp {
-    /// Bars and views, from the edge of the window inward.
+    /// Shows the bars and views, from the edge of the window inward.
     pub(super) fn parts(&mut self, ui: &mut Ui) {
         self.offer_length();
         let frame = theme::bar(ui.ctx());
@@ -91,7 +93,8 @@ impl ToileApp {
             .show(ui, |ui| self.pattern_side(ui));
     }
 
-    /// Whether the tables stand beside the pattern: as the user chose, else if the window is wide enough.
+    /// Whether the tables stand beside the pattern: as the user chose; if the user did not choose, whether
+    /// the window is wide enough.
     pub(crate) fn tables_stand_beside(&self, context: &egui::Context) -> bool {
         let is_wide = context.content_rect().width() >= WIDE;
         self.panes.tables_beside.unwrap_or(is_wide)

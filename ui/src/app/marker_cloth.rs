@@ -57,8 +57,8 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// Shows the choice of the marker's fabric: the fabric of the garment, or always one of the marker's
-    /// own.
+    /// Shows the choice of the marker's fabric: as the garment, always the marker's own, or another one that
+    /// panels are cut from.
     fn fabric_choice(
         &self,
         ui: &mut Ui,

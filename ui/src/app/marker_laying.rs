@@ -194,7 +194,7 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// A number field that may be empty. A typed number is stored, even if it equals the default.
+    /// Shows a number field that can be left empty. A typed number is stored, even if it equals the default.
     pub(super) fn given_field(
         &mut self,
         ui: &mut Ui,
@@ -238,7 +238,7 @@ impl ToileApp {
     }
 }
 
-/// Name of a roll, numbered from 0.
+/// Name of the roll with a number (from 0); a roll without a name of its own is called `roll 1` and so on.
 fn roll_name(roll: &Roll, number: usize) -> String {
     let name = roll.name.clone();
     name.unwrap_or_else(|| format!("roll {}", number + 1))

@@ -47,10 +47,11 @@ pub struct Searching {
     job: Job<FoundMarker>,
     /// Newest marker that the search has found; `None` once it is shown.
     newest: Arc<Mutex<Option<DocumentMarker>>>,
-    /// Start time, and the time the search may take (s).
+    /// Moment at which the search began.
     began: Instant,
+    /// Time that the search was given (s).
     seconds: f64,
-    /// Whether the user stopped it.
+    /// Whether the user stopped the search.
     is_stopped: bool,
 }
 
@@ -96,7 +97,8 @@ impl ToileApp {
         self.follow_marker();
     }
 
-    /// Makes a marker of the fabric that most panels are cut from, and shows it.
+    /// Makes a marker and shows it: of the fabric without a marker that most panels are cut from; if all have
+    /// one, of the fabric that most panels are cut from.
     pub(crate) fn new_marker(&mut self) {
         let pattern = self.base.pattern();
         let count = |id| pattern.panels.iter().filter(|p| p.fabric == id).count();
@@ -203,8 +205,8 @@ impl ToileApp {
             .on_hover_text("How the fabric is laid, its rolls, and rules for single pieces");
     }
 
-    /// Fields for the number of garments to cut: for the wearer, if the wearer has none of the sizes, and
-    /// for each size.
+    /// Shows fields for the number of garments to cut: one for each size; and one for the wearer, if the
+    /// wearer has none of the sizes or the marker has garments for the wearer.
     fn order_fields(&mut self, ui: &mut Ui, marker: &Marker) {
         let pattern = self.base.pattern().clone();
         let project = self.session.project();
@@ -274,8 +276,8 @@ impl ToileApp {
         }
     }
 
-    /// The result of the marker, or the progress of the search. The height of the line is constant, so
-    /// that nothing moves.
+    /// Shows a line with the result of the marker, or with the progress of the search. The line keeps its
+    /// height, so that nothing below it moves.
     fn verdict_line(&mut self, ui: &mut Ui) {
         let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         let (rect, _) = ui.allocate_exact_size(size, egui::Sense::hover());

@@ -96,8 +96,8 @@ impl ToileApp {
         })
     }
 
-    /// Applies the changes of a rule to the selected pieces: to the rule of the copy if it has one of its
-    /// own, else to the rule of its panel.
+    /// Applies the changes from `before` to `now` to the rules of the selected pieces: to the rule of the
+    /// piece if it has one of its own, else to the rule of its panel.
     fn set_rule(&mut self, marker: &Marker, before: &LayingRule, now: &LayingRule) {
         let mut rules = marker.rules.clone();
         for piece in &self.marker_view.selection {

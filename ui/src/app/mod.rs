@@ -83,7 +83,7 @@ use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silen
 
 /// Time between frames while something moves by itself.
 const FRAME: Duration = Duration::from_millis(33);
-/// The window. The session alone decides on documents; this holds the view of them.
+/// The window: a view of the document. Only the session changes the document.
 pub struct ToileApp {
     pub(crate) session: Session,
     /// The evaluated pattern without the gesture that is being previewed.

@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 #[derive(Default)]
 pub struct Pacing {
     waiting: VecDeque<Event>,
-    /// Whether the last frame ended with an event that may move the focus: then the views need a frame to
+    /// Whether the last frame ended with an event that can move the focus: then the views need a frame to
     /// move it before the next event.
     rests: bool,
 }
@@ -63,7 +63,7 @@ impl Pacing {
     }
 }
 
-/// Whether text typed after an event may go to another field than text typed before it.
+/// Whether text typed after an event can go to another field than text typed before it.
 fn may_move_focus(event: &Event) -> bool {
     match event {
         Event::PointerButton { pressed, .. } => !pressed,

@@ -83,7 +83,7 @@ impl Tables {
     }
 }
 
-/// Corner of the canvas in which the inspector stands, and the selection for which it was chosen.
+/// Corner of the canvas in which the inspector stands, and the selection that the corner was chosen for.
 #[derive(Default)]
 pub(crate) struct InspectorPlace {
     /// Selection that the corner was chosen for.

@@ -54,7 +54,8 @@ struct Pieces {
 
 impl Pieces {
     fn of_file(path: &Path) -> Result<Self, SessionError> {
-        // The pattern is drafted as if the file were opened: without sizes, to the average body.
+        // The pattern is drafted as if the file were opened: in its base size; if it has no sizes, to the
+        // average body.
         let mut session = Session::new();
         let path = path.to_owned();
         session.execute(Command::OpenPattern { path }, &mut Silent)?;

@@ -11,7 +11,7 @@ use toile_geometry::Vec2;
 use toile_pattern::{Edit, EditError, Evaluation, Name, PartId, PartReference, SheetId, plan};
 use toile_session::{Command, Project};
 
-/// Tolerance of the outlines of other sizes (m).
+/// Largest distance between an outline and the polyline drawn for it, when all sizes are shown (m).
 const GRADING_TOLERANCE: f64 = 1e-4;
 /// Distance by which an arrow key moves points, alone and with Shift (m).
 const NUDGES: [f64; 2] = [0.001, 0.01];
@@ -220,7 +220,7 @@ impl ToileApp {
         self.edit(plan::remove_parts(&self.base, &parts), label);
     }
 
-    /// The edits that change a panel by a function.
+    /// The edits that replace a panel by a copy that `change` has altered.
     pub(crate) fn changed_panel(
         &self,
         id: toile_pattern::PanelId,
@@ -291,7 +291,7 @@ impl ToileApp {
         })
     }
 
-    /// Moves the tables to the other side.
+    /// Moves the tables from below the pattern to beside it, or back.
     pub(crate) fn toggle_tables_side(&mut self) {
         self.panes.tables_beside = Some(!self.tables_are_beside);
     }
@@ -305,7 +305,7 @@ impl ToileApp {
         self.wants_scale = Some(step);
     }
 
-    /// Moves the selected points by the arrow keys.
+    /// Moves the selected points, sheets or guide by the arrow keys.
     pub(crate) fn nudge(&mut self, context: &egui::Context) {
         // While a seam is walked the arrow keys move along it.
         if matches!(self.view.tool, Tool::Walk) {

@@ -16,8 +16,9 @@ use toile_session::Paper;
 /// do not separate them.
 const DOUBLE_CLICK: f64 = 0.5;
 
-/// Size of a window that is opened for the first time, and least size of any (logical pixels).
+/// Width and height of the window when it is opened for the first time (logical pixels).
 const WINDOW: [f32; 2] = [1400.0, 860.0];
+/// Least width and height of the window (logical pixels).
 const MIN_WINDOW_SIZE: [f32; 2] = [760.0, 480.0];
 /// Least and largest scale of text, icons and buttons.
 const SCALES: [f32; 2] = [0.7, 2.5];
@@ -140,7 +141,7 @@ impl Preferences {
         }
     }
 
-    /// Remembers the size of the window, which is written when it closes.
+    /// Remembers the size of the window, to write it when the window closes.
     pub fn note_window(&mut self, context: &egui::Context) {
         self.fills_screen = context.input(|input| input.viewport().maximized.unwrap_or_default());
         let size = context.content_rect().size();

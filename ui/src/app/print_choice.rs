@@ -104,7 +104,7 @@ impl ToileApp {
     }
 }
 
-/// A choice from a drop-down list.
+/// Shows a drop-down list of the values `known`, and stores the user's choice in `chosen`.
 fn choose<T: Clone + PartialEq>(
     ui: &mut Ui,
     (name, label): (&str, egui::Id),

@@ -53,7 +53,8 @@ impl ToileApp {
         self.execute(Command::Edit { edits, label });
     }
 
-    /// Shows, for both ends of a seam, whether the lines that cross it there run on smoothly.
+    /// Shows, for each end of a seam, how smoothly the line that crosses the seam there runs on, as a hem
+    /// does.
     pub(crate) fn seam_joints(&mut self, ui: &mut Ui, seam: SeamId) {
         let palette = Palette::of(ui.ctx());
         for (words, tone) in crossing_lines((&self.base, &self.view.scene), seam) {

@@ -23,9 +23,9 @@ enum Stroked {
     Filled(&'static [Place]),
     /// A cubic curve.
     Curve([Place; 4]),
-    /// An existing point.
+    /// A disc: a point that exists already.
     Dot(Place),
-    /// A point that the tool makes.
+    /// A ring: a point that the tool makes.
     Ring(Place),
 }
 
@@ -318,7 +318,8 @@ pub fn paint(painter: &Painter, rect: Rect, command: &str, colour: Color32) {
                 let [dash, gap] = DASH.map(|length| length * scale);
                 painter.extend(Shape::dashed_line(&all(places), stroke, dash, gap));
             }
-            // Drawn as if convex: the outline and the small size hide the errors where a polygon is not.
+            // Drawn as if convex: the outline and the small size hide the errors of a polygon that is not
+            // convex.
             Filled(places) => {
                 painter.add(Shape::convex_polygon(
                     all(places),

@@ -22,8 +22,8 @@ pub fn guide_at<'g>(
     near.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Guides converted from coordinates of the table to those of a sheet, whose origin on the table is given
-/// (m).
+/// Guides converted from coordinates of the table to those of a sheet; `origin` is the sheet's origin on the
+/// table (m).
 pub fn on_sheet<'g>(guides: impl IntoIterator<Item = &'g Guide>, origin: Vec2) -> Vec<Guide> {
     let moved = guides.into_iter().map(|guide| Guide {
         at: guide.at - origin[guide.runs.axis()],
@@ -115,7 +115,7 @@ pub(super) fn on_guides(
     }));
 }
 
-/// Segment of a guide near a point of its sheet (m), a little longer than the reach.
+/// Segment of a guide round its point nearest to a point of the sheet (m), to twice the reach on either side.
 fn stretch(guide: &Guide, at: Vec2, reach: f64) -> Path {
     let middle = nearest(guide, at);
     let way = match guide.runs {

@@ -253,7 +253,8 @@ fn nearest(line: &[Vec2], to: Vec2) -> Option<(Vec2, f64)> {
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Parts of panels and sheets that lie wholly inside a rectangle of the table (m).
+/// The panels that lie wholly inside a rectangle of the table (m); if there are none, the shown points inside
+/// it.
 pub fn inside_box(
     (scene, table_layout): (&Scene, &TableLayout),
     open: &[SheetId],

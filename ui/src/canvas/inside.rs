@@ -2,7 +2,8 @@
 
 use toile_geometry::{Bounds2, Vec2, point_segment_distance};
 
-/// Number of grid steps in each direction. A finer grid would move the name by less than its own height.
+/// Number of steps, in each direction, of the grid of places that [`roomiest`] tries. A finer grid would move
+/// the name by less than its own height.
 const TRIED: usize = 17;
 
 fn sides(rings: &[Vec<Vec2>]) -> impl Iterator<Item = [Vec2; 2]> {
@@ -12,8 +13,8 @@ fn sides(rings: &[Vec<Vec2>]) -> impl Iterator<Item = [Vec2; 2]> {
     })
 }
 
-/// Whether a point is inside rings, by the even-odd rule. Points on a ring may count either way: the
-/// result only affects the place of a name.
+/// Whether a point is inside rings, by the even-odd rule. Points on a ring can count as inside or outside:
+/// the result only affects the place of a name.
 pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     sides(rings).fold(false, |inside, [a, b]| {
         let between = (a.y > point.y) != (b.y > point.y);
@@ -22,8 +23,8 @@ pub fn contains(rings: &[Vec<Vec2>], point: Vec2) -> bool {
     })
 }
 
-/// Weight of the room round a place (distance to the outline) against the distance from the middle: of two
-/// places with similar room the one nearer to the middle is taken.
+/// Weight of a place's distance to the outline relative to its distance from the middle (1): of two places
+/// with similar room round them, the one nearer to the middle is taken.
 const ROOM_OVER_DISTANCE: f64 = 5.0;
 
 /// Of the grid points inside the rings, the one with the most room round it, with a preference for the
@@ -51,8 +52,8 @@ pub fn roomiest(rings: &[Vec<Vec2>], bounds: &Bounds2) -> Vec2 {
     best.0
 }
 
-/// The middle part, a `share` of the length, of the chord through a point in a direction; `None` if the
-/// point is not inside the rings.
+/// The middle part, a `share` of the length, of the chord through a point in a direction; `None` if the line
+/// has no ring before the point or none behind it.
 pub fn chord(rings: &[Vec<Vec2>], through: Vec2, direction: Vec2, share: f64) -> Option<[Vec2; 2]> {
     let mut before = f64::NEG_INFINITY;
     let mut after = f64::INFINITY;

@@ -7,7 +7,7 @@ use super::selection::Item;
 use crate::theme;
 use egui::{Pos2, Rect, Vec2, vec2};
 
-/// Sides of a point on which its name may stand, the preferred first.
+/// Directions from a point in which its name can stand (Y down), the preferred first.
 const SIDES: [Vec2; 8] = [
     vec2(1.0, -1.0),
     vec2(1.0, 1.0),

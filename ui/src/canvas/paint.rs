@@ -17,9 +17,10 @@ use egui::{Align2, Color32, CornerRadius, Mesh, Painter, Pos2, Rect, Shape, Stro
 use toile_geometry::Vec2;
 use toile_pattern::{DisplayUnit, SeamId, SheetId};
 
-/// Grid steps of the table (m): the finest whose lines are far enough apart is drawn.
+/// Grid steps of the table (m): the finest whose lines are far enough apart is drawn, and the next coarser
+/// one.
 const GRID: [f64; 4] = [0.01, 0.05, 0.1, 0.5];
-/// Least distance of the fine grid lines (pixels).
+/// Least distance between the grid lines of the finer step that is drawn (pixels).
 const GRID_LEAST: f64 = 14.0;
 /// Distance of the number of a seam from the outline, inward (pixels).
 pub(super) const NUMBER_INSET: f64 = 16.0;
@@ -31,10 +32,11 @@ const FAINT: f32 = 0.55;
 
 /// Font sizes of a panel's name: the usual one, and one for little room (pixels).
 const CAPTION_SIZES: [f32; 2] = [15.0, 12.0];
-/// Number of places tried for the name of a panel, half its height apart.
+/// Number of steps by which the name of a panel is moved to be clear of other labels; a step is half the
+/// height of the name.
 const CAPTION_STEPS: usize = 12;
 
-/// Margin beside the longest line of a label (pixels).
+/// Width of the view that the longest line of a label leaves free (pixels).
 const LABEL_MARGIN: f32 = 24.0;
 
 /// Everything that is painted in one frame.
@@ -71,7 +73,7 @@ pub struct Picture<'a> {
     pub palette: &'a Palette,
 }
 
-/// Share of the selection colour in the colour of a hovered part.
+/// Share of the selection colour in the colour of a panel under the pointer (1).
 const HOVERED: f32 = 0.4;
 
 impl Picture<'_> {
@@ -231,8 +233,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Paints curves without a visible edge on them: curves that no panel is traced along, as pencil lines;
-    /// on an open sheet also curves from which operations moved the edges of the panel away, faint.
+    /// Paints the curve that is selected or under the pointer; curves that no panel is traced along; and on
+    /// an open sheet, faintly, curves from which operations moved the edges of the panel away.
     fn curves(&self, sheet: &SheetScene) {
         let origin = self.table_layout.sheet(sheet.id);
         let is_open = self.open.contains(&sheet.id);

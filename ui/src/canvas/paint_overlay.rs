@@ -7,9 +7,10 @@ use toile_geometry::Vec2;
 
 /// Opacity of the cloth of a ghost, the preview of a piece laid on the table.
 const GHOST: f32 = 0.55;
-/// Offset of a label from its place (pixels): far enough to keep the lines there visible.
+/// Offset of a label of the tone good, warning or fault from its place (pixels): far enough to keep the lines
+/// there visible.
 const ABOVE: egui::Vec2 = vec2(30.0, -36.0);
-/// Offset of a label of neutral tone (pixels).
+/// Offset of a label of the plain tone from its place (pixels).
 const BELOW: egui::Vec2 = vec2(30.0, 36.0);
 /// Gap between labels, and between them and the edge of the view (pixels).
 const ROOM: f32 = 3.0;

@@ -5,8 +5,9 @@ use super::scene::PanelScene;
 use super::selection::Item;
 use egui::{Shape, Stroke, vec2};
 
-/// Half the length of an arrow, and the length and half width of its head (pixels).
+/// Half the length of an arrow (pixels).
 const HALF: f32 = 14.0;
+/// Length and half the width of the head of an arrow (pixels).
 const HEAD: [f32; 2] = [8.0, 4.0];
 
 impl Picture<'_> {

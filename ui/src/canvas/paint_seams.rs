@@ -12,7 +12,7 @@ use toile_geometry::Vec2;
 
 /// Inset of the coloured line of a seam from the outline (pixels).
 const SEAM_INSET: f64 = 5.0;
-/// Stretches of a seam shorter than this carry no number (pixels).
+/// Least length of a stretch of a seam that carries the seam's number (pixels).
 const NUMBER_LEAST: f64 = 34.0;
 /// Places along a stretch that are tried for its number, the preferred first (share of its length).
 const NUMBER_PLACES: [f64; 7] = [0.5, 0.4, 0.6, 0.28, 0.72, 0.15, 0.85];
@@ -22,7 +22,7 @@ const NUMBER_RADIUS: f32 = 8.5;
 const UNEVEN: f64 = 0.001;
 
 impl Picture<'_> {
-    /// Whether a seam is drawn stronger: the seam, or an edge that it joins, is selected or hovered.
+    /// Whether a seam is drawn wider, because the seam or an edge that it joins is selected or hovered.
     pub(super) fn touched(&self, seam: &SeamDrawing) -> bool {
         self.is_lit(Item::Seam(seam.id))
             || seam.stretches.iter().any(|stretch| {

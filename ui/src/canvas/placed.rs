@@ -95,8 +95,8 @@ pub fn rounded(value: f64, step: f64) -> f64 {
     ((value / step).round() * step * 1e6).round() / 1e6
 }
 
-/// Curves within `reach` of a point (m), the nearest first; with each the share of its length at the point
-/// of it that is nearest, and that point.
+/// Curves within `reach` of a point (m), the nearest first. With each: the length of the curve up to its
+/// point nearest to the given one (m), and that point (m).
 pub fn near_curves(sheet: &SheetScene, at: Vec2, reach: f64) -> Vec<(&CurveScene, f64, Vec2)> {
     let mut near: Vec<(f64, &CurveScene, f64, Vec2)> = sheet
         .curves

@@ -3,9 +3,9 @@
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind, PleatKind, PressArrow, Pressed, Side};
 
-/// Place of the pressing arrow of a dart or pleat, and the directions in which it may be pressed, in the
-/// order of the choices: for a dart toward the leg before its point and toward the leg after it, for a
-/// knife pleat left and right of its line.
+/// Place of the pressing arrow of a dart or pleat, and the directions in which it can be pressed, in the
+/// order of the choices: for a dart toward the leg before its point and toward the leg after it, for a knife
+/// pleat left and right of its line.
 pub fn press_ways(arrows: &[PressArrow], step: &Operation) -> Option<(Vec2, [Vec2; 2])> {
     let is_first = match step.kind {
         OperationKind::Dart { pressed, .. } | OperationKind::Pivot { pressed, .. } => {

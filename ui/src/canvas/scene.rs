@@ -15,7 +15,7 @@ use toile_pattern::{
     PanelId, PointId, PressArrow, SeamId, Sheet, SheetId, Stage, press_arrows,
 };
 
-/// Tolerance of drawn curves (pixels).
+/// Largest distance between a curve and the polyline drawn for it (pixels).
 const CURVE_TOLERANCE: f64 = 0.15;
 
 /// Largest distance at which the end of a line counts as lying at a corner (m).
@@ -72,7 +72,7 @@ pub struct SheetScene {
     pub points: Vec<PointScene>,
     /// Curves that can be drawn.
     pub curves: Vec<CurveScene>,
-    /// Whether no panel is traced on the sheet.
+    /// Whether no panel is traced on the sheet, and the sheet lies on no panel.
     pub is_bare: bool,
     /// The panel that the sheet lies on, for drawing on the finished panel; `None` for a free sheet.
     pub on: Option<PanelId>,
@@ -120,7 +120,7 @@ pub struct CurveScene {
     pub path: Arc<Path>,
     /// Whether edges of panels follow the curve.
     pub is_traced: bool,
-    /// Pairs of a knot of the curve, or an end, and one of its handles.
+    /// Pairs of points: an end or an inner knot of the curve, and one of its handles.
     pub handles: Vec<[PointId; 2]>,
 }
 
@@ -137,7 +137,7 @@ pub struct PanelScene {
     pub cut: String,
     /// The drawn shape.
     pub shape: Arc<PanelShape>,
-    /// End points of its edges.
+    /// Drafted corners of the panel: the end points of its edges.
     pub corners: BTreeSet<PointId>,
     /// Corners that the panel's operations moved: the visible outline has no corner at their drafted
     /// places.
@@ -189,7 +189,8 @@ impl Scene {
         self.draft = draft.clone();
     }
 
-    /// Sets `is_left` of points: all of their panels have moved the corner away from the drafted place.
+    /// Sets `is_left` of every point: whether all panels that have a corner there moved it away from the
+    /// drafted place.
     fn leave_points(&mut self) {
         for sheet in &mut self.sheets {
             for point in &mut sheet.points {
@@ -421,7 +422,7 @@ impl SheetScene {
     }
 }
 
-/// Pairs of a knot or end and one of its handles, for a spline; empty for other curves.
+/// Pairs of points of a spline: an end or an inner knot, and one of its handles; empty for other curves.
 fn handles(curve: &Curve) -> Vec<[PointId; 2]> {
     let CurveRule::Spline { handles, knots, .. } = &curve.rule else {
         return Vec::new();

@@ -10,7 +10,7 @@ pub struct SeamDrawing {
     pub id: SeamId,
     /// Name of the seam.
     pub name: String,
-    /// Number shown on both sides.
+    /// Number that is shown on both sides of the seam.
     pub number: usize,
     /// Length of each side (m).
     pub lengths: [f64; 2],

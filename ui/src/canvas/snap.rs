@@ -8,7 +8,7 @@ use toile_pattern::{Guide, Number, PointId, PointRule, SheetId};
 
 /// Distance within which the pointer snaps to a place (pixels).
 const REACH: f64 = 9.0;
-/// Distance within which the pointer snaps to the height or the vertical of a point (pixels).
+/// Distance within which the pointer snaps to the level of a point, or to the vertical through it (pixels).
 const LEVEL_REACH: f64 = 5.0;
 /// Snapping places near a point of a sheet (m), the best first; the last is the point itself. Guides are
 /// in the coordinates of the sheet.

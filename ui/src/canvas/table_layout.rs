@@ -12,7 +12,8 @@ const GAP: f64 = 0.06;
 const PUSHED: f64 = 0.03;
 /// Half the side of the visible area of an empty sheet (m).
 const ROOM: f64 = 0.3;
-/// Aspect ratio, width over height, for which sheets are arranged in rows: about that of the view.
+/// Ratio of width to height that sheets arranged in rows have together, as nearly as possible (1): about that
+/// of the view.
 const ASPECT: f64 = 1.15;
 
 /// Positions of the origins of sheets and panels on the table (m).
@@ -220,7 +221,7 @@ fn overlap(stays: &Bounds2, goes: &Bounds2) -> Option<Vec2> {
     })
 }
 
-/// Bounding box of the panels of a sheet, or of the sheet if it has none (m).
+/// Bounding box of the panels of a sheet (m); of its points and curves if it has no panels.
 fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
     let panels = scene.panels.iter().filter(|panel| panel.sheet == sheet.id);
     let drawn = panels
@@ -232,7 +233,7 @@ fn bounds(sheet: &SheetScene, scene: &Scene) -> Option<Bounds2> {
     drawn.or_else(|| sheet.bounds())
 }
 
-/// Arranges boxes in rows, in the given order; returns the position of each origin (m).
+/// Arranges the boxes of sheets in rows, in the given order; returns where the origin of each sheet goes (m).
 fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
     let sizes: Vec<Vec2> = boxes
         .iter()
@@ -253,8 +254,8 @@ fn rows(boxes: &[(SheetId, Bounds2)]) -> BTreeMap<SheetId, Vec2> {
     }
     places
 }
-/// Width of rows (m) whose overall box comes nearest to the wanted aspect ratio; tries 25 widths, from the
-/// widest box to all boxes in one row.
+/// Width of rows (m) at which the box round all rows comes nearest to the ratio `ASPECT`; tries 25 widths,
+/// from the widest box to all boxes in one row.
 fn best_width(sizes: &[Vec2]) -> f64 {
     let widest = sizes.iter().map(|s| s.x).fold(0.0, f64::max);
     let total: f64 = sizes.iter().map(|s| s.x).sum();
@@ -265,7 +266,7 @@ fn best_width(sizes: &[Vec2]) -> f64 {
         .unwrap_or(widest)
 }
 
-/// Height of the smallest box of the wanted aspect ratio that holds all rows of a given width (m).
+/// Height of the smallest box of the ratio `ASPECT` that holds all rows, if these have a given width (m).
 fn misfit(sizes: &[Vec2], width: f64) -> f64 {
     let (mut x, mut row, mut used, mut height) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0);
     for size in sizes {

@@ -9,13 +9,13 @@ use toile_geometry::{Curve, Vec2};
 use toile_pattern::walk::{Walk, WalkSides, WalkedNotch};
 use toile_pattern::{Draft, DraftSeam, Piece, SeamId, SeamOrigin};
 
-/// Tolerance of drawn curves (m).
+/// Largest distance between a curve and the polyline drawn for it (m).
 const FLATNESS: f64 = 1e-4;
 
 /// Geometry of a seam that is walked.
 #[derive(Debug)]
 pub struct WalkedSeam {
-    /// Both sides of the seam, measured.
+    /// Measurements of both sides of the seam: a new walk uses them and does not measure again.
     sides: WalkSides,
     /// Index of the seam in the draft.
     at: usize,

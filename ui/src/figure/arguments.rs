@@ -11,8 +11,8 @@ pub struct FigureTask {
     pub figure: Figure,
     /// The patterns it is dressed in, the innermost first.
     pub patterns: Vec<PathBuf>,
-    /// Keys to press, each with the number of frames computed after it, and the file of the picture of the
-    /// result. With pictures no window is opened.
+    /// Keys to press, each with the number of frames computed after it; and the file for the pictures taken
+    /// after each of them, side by side. `None`: a window is opened, and no picture is written.
     pub pictures: Option<(Vec<(RealtimeKey, usize)>, PathBuf)>,
 }
 

@@ -34,7 +34,7 @@ pub struct FigureWindow {
     floor: CornerBuffer,
     lines: CornerBuffer,
     last: Option<Instant>,
-    /// Mean computing time per frame, of the clothes (s).
+    /// Mean time in which a frame of the figure and its clothes is computed (s).
     spent: f64,
     refusal: Option<String>,
 }

@@ -55,20 +55,21 @@ impl Orbit {
         [right, self.backward().cross(&right)]
     }
 
-    /// Rotates about the target, by a drag (logical pixels).
+    /// Turns the eye about the target, by a drag (logical pixels).
     pub fn turn(&mut self, drag: egui::Vec2) {
         self.yaw -= f64::from(drag.x) * TURN;
         self.pitch = (self.pitch + f64::from(drag.y) * TURN).clamp(-STEEPEST, STEEPEST);
     }
 
-    /// Moves parallel to the screen, by a drag in a view of a height (logical pixels).
+    /// Moves the eye and the target parallel to the screen, by a drag in a view `height` high (logical
+    /// pixels).
     pub fn pan(&mut self, drag: egui::Vec2, height: f32) {
         let scale = 2.0 * self.distance * (FIELD / 2.0).tan() / f64::from(height.max(1.0));
         let [right, up] = self.axes();
         self.target += (up * f64::from(drag.y) - right * f64::from(drag.x)) * scale;
     }
 
-    /// Moves closer by a factor.
+    /// Moves the eye closer to the target by a factor.
     pub fn zoom(&mut self, factor: f64) {
         self.distance = (self.distance / factor).clamp(DISTANCES[0], DISTANCES[1]);
     }

@@ -11,8 +11,10 @@ use egui::Color32;
 const SAMPLES: u32 = 4;
 /// Bytes per corner of a triangle or line.
 const CORNER_BYTES: u64 = 4 * CORNER_FLOATS as u64;
-/// egui expects images that are encoded as sRGB, but in a format that is not marked as sRGB.
+/// Format of the image: egui expects images that are encoded as sRGB, but in a format that is not marked as
+/// sRGB.
 const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Format of the depth buffer.
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Floats of the view uniforms: a matrix and two directions.
 const VIEW_FLOATS: usize = 24;

@@ -93,7 +93,7 @@ fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     normals
 }
 
-/// Triangles of the mannequin.
+/// Corners of the triangles of the mannequin.
 pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     let normals = normals(positions, triangles);
     let colour = LINEN.map(linear);
@@ -108,7 +108,7 @@ pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     corners.collect()
 }
 
-/// Triangles of a surface of a figure in motion, lit from both sides.
+/// Corners of the triangles of a surface of a figure in motion, lit from both sides.
 pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
     let place = |p: &[f32; 3]| Vec3::from(p.map(f64::from));
     let positions: Vec<Vec3> = surface.positions.iter().map(place).collect();
@@ -124,7 +124,7 @@ pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
     corners.collect()
 }
 
-/// A disc that fades into the background.
+/// Triangles of the floor: a disc that fades into the background at the rim.
 pub fn floor(palette: &Palette) -> Vec<Corner> {
     let [middle, rim] = [palette.floor, palette.stage].map(|colour| {
         let [red, green, blue, _] = colour.to_array();
@@ -217,7 +217,7 @@ impl ClothLook {
         }
     }
 
-    /// The cloth at one moment of a drape.
+    /// The corners and seam lines of the cloth in a frame of a drape.
     pub fn solid(&self, frame: &LiveFrame) -> ClothSolid {
         let positions = &frame.positions;
         let merged = |v: u32| frame.target.get(v as usize).copied().unwrap_or(0);

@@ -58,7 +58,7 @@ fn lit(normal: vec3<f32>, colour: vec3<f32>) -> vec3<f32> {
     let sky = vec3<f32>(0.50, 0.51, 0.53);
     let ground = vec3<f32>(0.27, 0.255, 0.24);
     let around = mix(ground, sky, 0.5 + 0.5 * normal.y);
-    // Half-wrapped, so that folds turn away softly.
+    // The main light reaches a little beyond the surfaces that it grazes, so that folds darken softly.
     let key = max((dot(normal, view.key.xyz) + 0.25) / 1.25, 0.0);
     let fill = max(dot(normal, view.fill.xyz), 0.0);
     return colour * (around + vec3<f32>(0.62, 0.60, 0.57) * key * key + 0.10 * fill);

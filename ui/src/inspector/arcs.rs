@@ -29,7 +29,7 @@ pub fn numbers_of(evaluation: &Evaluation, part: PartId) -> Vec<NumberEntry> {
 /// Converts a displayed number to the stored one.
 ///
 /// # Errors
-/// An arc cannot sweep this angle.
+/// An arc cannot sweep this angle, or the formula would be too long.
 pub fn kept(
     evaluation: &Evaluation,
     entry: &NumberEntry,
@@ -45,7 +45,7 @@ fn is_bulge(entry: &NumberEntry) -> bool {
     matches!(entry.place.part, PartId::Curve(_)) && entry.place.path == BULGE
 }
 
-/// Path of the number that an arc stores.
+/// Name, in the document, of the number that an arc stores: the tangent of a quarter of the swept angle.
 const BULGE: &str = "bulge";
 
 impl ToileApp {

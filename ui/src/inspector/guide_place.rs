@@ -8,8 +8,8 @@ use egui::{Id, Ui};
 use toile_geometry::Vec2;
 use toile_pattern::{GuideId, GuideRun, Number, Want, plan};
 
-/// Positions of guides are rounded to a nanometre for display: finer digits come from rounding in sums
-/// (1/m).
+/// Steps per metre in which positions of guides are shown (1/m): nanometres, because finer digits come from
+/// rounding errors in sums.
 const SHOWN: f64 = 1e9;
 
 impl ToileApp {

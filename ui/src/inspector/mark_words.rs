@@ -124,7 +124,8 @@ pub fn distance(evaluation: &Evaluation, entry: &NumberEntry) -> Option<String> 
     ))
 }
 
-/// The mark that a number belongs to, and its panel: place of a notch, a dart's mouth, a cut or a pleat.
+/// The place on an edge (mark) that a number belongs to, and the panel of that place: where a notch, a dart's
+/// mouth, a cut or a pleat is.
 fn mark_at<'p>(pattern: &'p Pattern, entry: &'p NumberEntry) -> Option<(&'p Panel, &'p Mark)> {
     let owns = |panel: &Panel| match entry.place.part {
         PartId::Notch(id) => panel.notch(id).is_some(),

@@ -5,10 +5,9 @@ use crate::canvas::scene::PanelScene;
 use toile_geometry::Vec2;
 use toile_pattern::{Operation, OperationKind};
 
-/// Words for the two directions in which a dart or pleat may be pressed, in the order of the choices: to
-/// the centre, which lies on the fold line, or to the side. Without a fold, or along it: right, left, up or
-/// down on the drawing, which shows the right side of the cloth. If no arrow is known: by the name of the
-/// choice.
+/// Words for the two directions in which a dart or pleat can be pressed, in the order of the choices: to the
+/// centre, which lies on the fold line, or to the side. Without a fold, or along it: right, left, up or down
+/// on the drawing, which shows the right side of the cloth. If no arrow is known: by the name of the choice.
 pub fn press_words(panel: Option<&PanelScene>, step: &Operation) -> [&'static str; 2] {
     let found = panel.and_then(|panel| Some((panel, press_ways(&panel.pressed, step)?)));
     match found {

@@ -12,19 +12,21 @@ use toile_pattern::plan::{self, FabricFigure};
 use toile_pattern::{Edit, EditError, Entity, Fabric, FabricId, PanelId, Want};
 use toile_session::{Command, FabricChoice, library_fabric, with_hardening};
 
-/// Width of the list, and of a field (pixels).
+/// Width of the list of fabrics (pixels).
 const LIST: f32 = 190.0;
+/// Width of a text field (pixels).
 const FIELD: f32 = 84.0;
-/// Height of a line, and gap between two lines (pixels).
+/// Height of a line (pixels).
 const LINE: f32 = 22.0;
+/// Gap between two lines (pixels).
 const LINE_GAP: f32 = 3.0;
-/// Width of the part for the marker (pixels).
+/// Width of the part with the figures that a marker uses (pixels).
 const MARKER_PART: f32 = 300.0;
 /// Largest number of figures in a column.
 const ROWS: usize = 6;
 /// Height of the drop-down list of the fabrics that the garment can be cut from (pixels).
 const CHOICES: f32 = 480.0;
-/// Side of a swatch (pixels).
+/// Side of the small square in the colour of a fabric (pixels).
 const SWATCH: f32 = 12.0;
 /// Least and largest width of a roll that can be typed (m).
 const WIDTHS: [f64; 2] = [0.05, 20.0];
@@ -327,8 +329,8 @@ impl ToileApp {
                 .field(ui, (id, label), &fabric.name, |_| Ok(String::new()))
         });
         if let Entered::Text(text) = entered {
-            // Only the name changes: the hardening that the library gives a fabric by its name is stored
-            // with it.
+            // Only the name changes. The library gives a fabric hardening by its name: this hardening is
+            // stored in the fabric, because under the new name the library would not give it.
             let kept = with_hardening(fabric);
             let planned = plan::rename(&self.base, fabric.id.into(), &text).map(|mut edits| {
                 for edit in &mut edits {
@@ -358,7 +360,7 @@ impl ToileApp {
         }
     }
 
-    /// Shows the choice of the colour, picked or typed.
+    /// Shows the choice of a fabric's colour, which is picked or typed.
     fn colour_choice(&mut self, ui: &mut Ui, fabric: &Fabric) {
         let picked = self.tables.fabric.colour.filter(|(id, _)| *id == fabric.id);
         let before = picked.map_or(bytes(fabric.colour), |(_, colour)| colour);

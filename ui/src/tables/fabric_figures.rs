@@ -13,7 +13,7 @@ use toile_pattern::plan::{self, FabricFigure};
 use toile_pattern::{Fabric, Want};
 use toile_session::with_hardening;
 
-/// Least width of the source of a figure (pixels).
+/// Largest width of the text that names the source of a figure (pixels).
 const SOURCE: f32 = 150.0;
 
 impl ToileApp {

@@ -42,12 +42,12 @@ pub fn colour_text(colour: [f64; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// The parts of a colour in steps of 1/255.
+/// Red, green and blue of a colour, in steps of 1/255.
 pub fn bytes(colour: [f64; 3]) -> [u8; 3] {
     colour.map(|share| (share * 255.0).round() as u8)
 }
 
-/// The parts of a colour (0..=1), from steps of 1/255.
+/// Red, green and blue of a colour (0..=1), from steps of 1/255.
 pub fn shares(bytes: [u8; 3]) -> [f64; 3] {
     bytes.map(|byte| f64::from(byte) / 255.0)
 }

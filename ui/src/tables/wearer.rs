@@ -17,7 +17,7 @@ use toile_session::{BodyChoice, Command, Figure};
 const CHOICE: f32 = 420.0;
 /// Least width of the measurements beside the list (pixels).
 const MEASUREMENTS: f32 = 400.0;
-/// The measurement that is stored as given, too, when another one is typed.
+/// Name of the measurement that is stored, too, when another one is typed, unless it was given before.
 const HEIGHT: &str = "height";
 /// Width of the value of a measurement (pixels).
 const VALUE: f32 = 96.0;
@@ -43,12 +43,12 @@ struct Known {
     all: Measurements,
     /// The measurements that were given.
     asked: Measurements,
-    /// Average height of the figure (m).
+    /// Height of the average body of the wearer's figure (m).
     figure_height: Option<f64>,
 }
 
 impl WearerTable {
-    /// Forgets the wearer, because another document is opened.
+    /// Forgets the wearer from measurements or a file, because another document is opened.
     pub fn forget(&mut self) {
         self.own = None;
     }
@@ -391,7 +391,8 @@ fn chosen_again(own: &BodyChoice) -> Option<Command> {
 }
 
 /// The given measurements with one added, changed or removed. If another measurement than the height is
-/// typed, the present height is kept as given, so that measurements from the floor do not change.
+/// typed, the present height is stored as a given measurement, too, so that measurements from the floor do
+/// not change.
 fn with_measurement(known: &Known, name: &str, value: Option<f64>) -> Result<Measurements, String> {
     let mut table = known.asked.clone();
     let mut ask = |name: &str, value: f64| {

@@ -155,7 +155,7 @@ impl ToileApp {
         (project.layer, others.collect())
     }
 
-    /// Adds the garment of a pattern file over all others, or under all.
+    /// Adds the garment of a pattern file over all other garments, or under all others.
     pub(crate) fn wear(&mut self, path: &Path, place: WornWhere) {
         let (mut own, mut others) = self.layers();
         let all = || others.iter().map(|other| other.layer).chain([own]);

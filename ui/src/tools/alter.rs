@@ -14,8 +14,8 @@ use toile_pattern::{
     PleatKind, Side, Want,
 };
 
-/// Distance by which the points of both darts are moved back, if only a share of a dart is moved (m): about
-/// the usual distance between a dart's point and the bust point.
+/// Distance from the pivot point at which both darts end, if only a share of a dart is moved (m): about the
+/// usual distance between a dart's point and the bust point.
 const SET_BACK: f64 = 0.02;
 
 /// Moves a dart, or a share of it, to another place of the outline.
@@ -56,8 +56,8 @@ pub static PIVOT: SlotTool = SlotTool {
             ));
         }
         let near = super::panel::marked(reading, *panel, (*at, mark))?;
-        // The points of the two darts must not meet; the user can change the distance by which they are set
-        // back, a number of the operation.
+        // The points of the two darts must not meet. The user can change their distance from the pivot point:
+        // it is a number of the operation.
         let moved = reading.evaluation.number(share, Want::Plain);
         let back = match moved.is_some_and(|moved| moved < 1.0) {
             true => SET_BACK,
@@ -279,7 +279,8 @@ fn pleat(answers: &[Answer], reading: &Reading<'_>, kind: PleatKind) -> Result<P
     Ok(plan)
 }
 
-/// Note that says from which end of an edge the places are measured: from the end nearer to the click.
+/// Note to the user that names the end of an edge from which the places are measured: the end nearer to the
+/// click.
 fn counted_words(
     evaluation: &Evaluation,
     (panel, edge): (PanelId, EdgeId),
@@ -305,8 +306,8 @@ fn how_many(evaluation: &Evaluation, count: &Number) -> Result<u16, EditError> {
     })
 }
 
-/// Places along a finished edge of a panel: `count` places, the first at `first`, the others at a spacing;
-/// if the spacing is zero, evenly spaced up to the end of the edge.
+/// Places along a finished edge of a panel: `count` places, the first at `first`, the others at a spacing; if
+/// the spacing is zero, evenly spaced, the last one spacing before the end of the edge.
 fn spaced(
     evaluation: &Evaluation,
     near: &FinishedEdge,
@@ -347,7 +348,7 @@ fn length_of(evaluation: &Evaluation, number: &Number) -> Result<f64, EditError>
 }
 
 /// Cut lines that begin at places along one finished edge of a panel, measured from one of the edge's ends.
-/// Each ends on another edge, at the same share of that edge's length.
+/// Each ends on the other edge that was clicked, at the same share of that edge's length.
 fn cuts_at(
     evaluation: &Evaluation,
     ((panel, [_, to]), near, end): ((PanelId, [EdgeId; 2]), &FinishedEdge, usize),

@@ -11,7 +11,7 @@ use crate::canvas::selection::Item;
 use toile_geometry::Vec2;
 use toile_pattern::{CurveId, EdgeId, Number, PanelId, PointRule, SheetId, Want};
 
-/// The present answer to the slot in hand.
+/// The answer that pointer and typed text give now to the slot that the tool asks for.
 ///
 /// # Errors
 /// There is no valid answer yet: the reason, and the field it is about.

@@ -62,7 +62,7 @@ pub static POINT_FROM: SlotTool = SlotTool {
     },
 };
 
-/// The plan that selects the last of some points, with the typed name for that point.
+/// The plan that gives the last of some points the typed name, and selects that point.
 fn drawn(
     mut planning: Planning,
     points: Vec<PointId>,

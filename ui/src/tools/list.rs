@@ -47,8 +47,8 @@ fn ordinal(number: usize) -> String {
     format!("{number}{end}")
 }
 
-/// Splits a text into numbers. Separators are spaces and semicolons; also commas before a space, or if the
-/// text has no spaces at all. Other commas are decimal commas.
+/// Splits a text into numbers. Separators are spaces, semicolons and commas before a space. In a text without
+/// these a comma separates if there are several commas or a decimal point. Other commas are decimal commas.
 fn parts(text: &str) -> Vec<String> {
     let text = text.trim().trim_start_matches('=').trim();
     let is_close = !text.contains(char::is_whitespace) && !text.contains(';');

@@ -9,7 +9,7 @@ use toile_pattern::{CurveRule, Edit, EditError};
 /// A number of a spline's handle.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Handle {
-    /// Label, as `x at A`.
+    /// Label of the number, as `x at A`.
     pub label: String,
     /// The number.
     pub entry: NumberEntry,
@@ -46,7 +46,7 @@ pub(super) fn handles(item: Item, reading: &Reading<'_>) -> Vec<Handle> {
     found
 }
 
-/// Name of the part made last; `None` if it has no name.
+/// Kind and name of a part, in words; `None` if the pattern does not have the part.
 pub(super) fn name(item: Item, reading: &Reading<'_>) -> Option<String> {
     item.words(reading.evaluation.pattern())
 }

@@ -81,7 +81,8 @@ pub static DART: SlotTool = SlotTool {
     },
 };
 
-/// Whether the dart that a plan adds is pressed away from the fold line of its panel, which is the centre.
+/// Whether the dart that a plan adds is pressed away from the fold line of its panel: the fold line is the
+/// centre of the panel.
 fn leads_from_fold(reading: &Reading<'_>, plan: &super::slots::Plan) -> bool {
     let toward = || {
         let Some(Item::Operation(id, dart)) = plan.select.single() else {
@@ -140,7 +141,7 @@ pub static FISHEYE: SlotTool = SlotTool {
     },
 };
 
-/// Distance from the pointer to the mouth of a dart (m).
+/// Distance from the pointer to the mouth of a dart (m), in whole millimetres and at least one.
 fn depth(answers: &[Answer], pointer: &Pointer) -> f64 {
     let mouth = answers.iter().find_map(|answer| match answer {
         Answer::OnLine(_, _, at, _) => Some(*at),

@@ -142,8 +142,8 @@ fn curve(
     })
 }
 
-/// Draws a sector of a ring, counter-clockwise from the ray to the right of the centre, and traces a panel
-/// on it. Without an inner radius the sector reaches to the centre.
+/// Draws a sector of a ring, counter-clockwise from the direction to the right of the centre, and traces a
+/// panel on it. Without an inner radius the sector reaches to the centre.
 fn sector(
     planning: &mut Planning,
     centre: Centre,

@@ -20,7 +20,7 @@ use toile_geometry::Vec2;
 use toile_pattern::plan::{self, FormulaChange};
 use toile_pattern::{Edit, EditError, Entity, Evaluation, Panel, PanelId, PointId, SheetId};
 
-/// Sine of the largest angle at which two handles count as collinear.
+/// Sine of the largest angle between the directions of two handles at which they count as collinear (1).
 const SMOOTH: f64 = 1e-3;
 /// Largest distance from its goal at which a point still counts as in place, after another point was moved
 /// (m).
@@ -32,7 +32,7 @@ pub enum SelectState {
     /// No gesture.
     #[default]
     Idle,
-    /// Parts are dragged; the rule says how a drag changes the formulas of their numbers.
+    /// Parts are dragged; and how the drag changes the formulas of their numbers.
     Dragging(Dragged, FormulaChange),
     /// A box is drawn between two points of the table (m); the flag says whether it adds to the
     /// selection.
@@ -42,7 +42,8 @@ pub enum SelectState {
 /// The dragged parts.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dragged {
-    /// Points, and the one of them under the pointer.
+    /// Points, and the one whose goal is rounded: the point under the pointer; of a dragged edge or curve,
+    /// its first end.
     Points(Vec<PointId>, PointId),
     /// Panels on the table.
     Panels(Vec<PanelId>),
@@ -96,7 +97,7 @@ fn nothing_shown() -> Outcome {
     }
 }
 
-/// Part to select by a click; repeated clicks at one place cycle through the parts there.
+/// The part that a click selects; repeated clicks at one place select the parts there in turn.
 fn clicked(pointer: &Pointer, selection: &Selection) -> Option<Item> {
     let current = selection.single();
     // Clicks on a selected guide do not go on to the panel under it.
@@ -271,9 +272,9 @@ fn moved(
     }
 }
 
-/// The edits that move the dragged point, and then the opposite handle, with the same rule for their
-/// formulas. The opposite handle is moved by an adjustment instead if the rule fails for it, or would move
-/// the dragged point again, as when one variable defines both.
+/// The edits that move the dragged point, and then the opposite handle, and change their formulas as `change`
+/// says. The opposite handle is moved by an adjustment instead if that fails for it, or would move the
+/// dragged point again, as when one variable defines both.
 fn moved_by(
     reading: &Reading<'_>,
     goals: &[(PointId, Vec2)],
@@ -410,8 +411,8 @@ pub(super) fn overlay(state: &SelectState, reading: &Reading<'_>) -> Vec<Overlay
     }
 }
 
-/// Text beside a dragged point that tells how the drag changes its formulas; `None` if no formula defines
-/// the point and the rule is the default one.
+/// Text beside a dragged point that tells how the drag changes its formulas; `None` if no formula defines the
+/// point and `change` is the default.
 fn formula_words(point: PointId, change: FormulaChange, reading: &Reading<'_>) -> Option<Overlay> {
     let numbers = plan::numbers_of(reading.evaluation, point.into());
     let mut numbers = numbers.iter().filter_map(|entry| entry.number.as_ref());

@@ -145,7 +145,7 @@ fn told_words(state: &SlotState) -> String {
     told.map_or_else(String::new, |told| in_lines(told))
 }
 
-/// Text of a number; without the label if the field of the typed number shows that.
+/// Text of a number; without its label while the field for typing, which shows the label, is there.
 fn number_words(
     state: &SlotState,
     reading: &Reading<'_>,
@@ -200,7 +200,7 @@ fn edge((panel, edge): &ChainEdge) -> Overlay {
     Overlay::Edge(*panel, *edge)
 }
 
-/// A sentence broken into lines short enough for the pointer.
+/// A sentence broken into lines that are short enough to stand beside the pointer.
 fn in_lines(words: &str) -> String {
     let mut lines = vec![String::new()];
     for word in words.split(' ') {
@@ -269,7 +269,7 @@ pub(super) fn hint(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) ->
     }
 }
 
-/// Request for the present slot.
+/// Request to the user for an answer to the present slot.
 fn asked(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> String {
     let typable = Typable::new(tool, state, reading);
     if state.is_typing() {

@@ -246,8 +246,8 @@ fn named(
     }
 }
 
-/// Accepts the answer to a slot; returns whether the slot is complete. Only a chain of edges can be added
-/// to.
+/// Accepts the answer to a slot; returns whether the slot is complete. It is not complete after a Shift-click
+/// that adds an edge to a chain.
 fn accept_answer(
     tool: &SlotTool,
     state: &mut SlotState,
@@ -343,7 +343,8 @@ fn shown(tool: &SlotTool, state: &SlotState, reading: &Reading<'_>) -> Option<Pl
         });
     }
     let kind = slot(tool, state).kind;
-    // The preview of number slots begins with the first of them: the later ones have their defaults.
+    // If the present slot and all later ones are number slots, the plan is previewed with the defaults of
+    // the later ones.
     let rest = tool.slots.iter().skip(state.answers.len() + 1);
     let rest = rest.map(usual).collect::<Option<Vec<Answer>>>()?;
     let is_number = matches!(kind, SlotKind::Number { .. } | SlotKind::Numbers { .. });

@@ -25,7 +25,7 @@ pub struct SlotTool {
     pub command: &'static str,
     /// Slots, in order.
     pub slots: &'static [Slot],
-    /// Planner from the answers to edits.
+    /// Makes the plan, with its edits, from the answers.
     pub plan: fn(&[Answer], &Reading<'_>) -> Result<Plan, EditError>,
 }
 
@@ -41,7 +41,7 @@ pub struct Slot {
 /// Kind of answer that a slot takes.
 #[derive(Clone, Copy, Debug)]
 pub enum SlotKind {
-    /// A place of a sheet, with numbers that may be typed for it.
+    /// A place of a sheet; numbers can be typed for it in these fields.
     Place(Fields),
     /// The last place of a shape; a name can be typed after the numbers.
     Named(Fields),
@@ -84,13 +84,13 @@ pub enum SlotKind {
     },
 }
 
-/// Number fields that are shown first for a place after the first place of a tool; a typed sign chooses
-/// other fields. For the first place coordinates are typed.
+/// Fields for the numbers of a place, until a typed sign chooses other fields. For the first place of a tool
+/// coordinates are typed instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fields {
     /// Distance and angle from the last place.
     Usual,
-    /// Radius and angle from the last place, which is a centre.
+    /// Radius and angle from the last place, the centre of an arc.
     Radius,
     /// Width and height from the last place.
     Size,
@@ -152,13 +152,13 @@ pub struct Plan {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SlotState {
     pub(super) answers: Vec<Answer>,
-    /// Places so far, for a slot that takes several.
+    /// Places given so far to a slot that takes several.
     pub(super) places: Vec<Placed>,
-    /// Edges so far, of a chain.
+    /// Edges given so far to a slot that takes a chain.
     pub(super) chain: Vec<ChainEdge>,
     /// Typed texts, one per field.
     pub(super) typed: Typed,
-    /// Name that was typed before the last of several places, or for the next part.
+    /// Name that was typed before the last of several places was given, or before the next part was begun.
     pub(super) named: String,
     /// The part that the tool made last: text typed before the next part is begun may belong to it.
     pub(super) made: Option<Item>,

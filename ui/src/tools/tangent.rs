@@ -49,7 +49,7 @@ pub(super) fn end_near(
     Ok(Answer::End(placed, curve, end))
 }
 
-/// Direction in which a curve would run on beyond one of its ends: of the tangent there (rad).
+/// Direction in which a curve would run on beyond one of its ends: the direction of the tangent there (rad).
 ///
 /// # Errors
 /// The curve does not exist or has no direction there.

@@ -7,8 +7,8 @@ use toile_pattern::{Number, Want};
 
 /// Angular step while Shift is held (degrees).
 const TURN: f64 = 15.0;
-/// Distance of the pointer beyond the last place, left or below, from which on a typed size is negative
-/// (pixels).
+/// Distance to the left of or below the last place, beyond which the pointer makes a typed width or height
+/// negative (pixels).
 const BEYOND: f64 = 12.0;
 
 /// The place `free` moved to the nearest direction from the last place in steps of 15 degrees.
@@ -33,8 +33,9 @@ pub(super) fn turned(last: &Placed, pointer: &Pointer, free: Placed) -> Placed {
     }
 }
 
-/// Makes a typed width or height negative if the pointer is left of or below the last place, at the offset
-/// `way` (m); `pixel` is the size of a pixel (m). A number typed with a minus sign is kept.
+/// Makes a typed width or height negative if the pointer is left of or below the last place. `way` is the
+/// offset of the pointer from that place in the direction of the number (m), `pixel` the size of a pixel (m).
+/// A negative number stays as it is.
 pub(super) fn to_side(
     number: Number,
     way: f64,

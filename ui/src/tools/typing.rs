@@ -28,8 +28,11 @@ const NUMBER: &str = "number";
 pub const NAME_SIGN: char = '\'';
 /// Signs that choose another way to type a place, as in other CAD programs.
 pub const WAY_SIGNS: [char; 3] = [BESIDE_SIGN, COORDINATES_SIGN, ANGLE_SIGN];
+/// Sign that chooses [`Way::Beside`].
 const BESIDE_SIGN: char = '@';
+/// Sign that chooses [`Way::Coordinates`].
 const COORDINATES_SIGN: char = '#';
+/// Sign that chooses [`Way::FromLast`] or [`Way::Radius`], or goes on to the angle of a way that has one.
 const ANGLE_SIGN: char = '<';
 
 /// A way to type the answer to a slot.
@@ -39,7 +42,7 @@ pub(super) enum Way {
     Coordinates,
     /// Distance and angle from the last place.
     FromLast,
-    /// Radius and angle from the last place, which is a centre.
+    /// Radius and angle from the last place, the centre of an arc.
     Radius,
     /// Offset to the right and upward from the last place.
     Beside,
@@ -134,14 +137,14 @@ pub(super) struct Field {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Typable {
     /// Fields; the field for the name comes last. A field for numbers and one for the name exist even if
-    /// they are not accepted, to show text that is typed all the same.
+    /// numbers or a name are not accepted, to show text that is typed all the same.
     pub fields: Vec<Field>,
     /// Whether numbers are accepted.
     pub takes_numbers: bool,
     /// Whether a name is accepted.
     pub takes_name: bool,
-    /// Handle numbers of the part made last, for which the number fields are; empty if they are for the
-    /// slot.
+    /// Handle numbers of the part made last, if the number fields are for these; empty if the fields are for
+    /// the slot.
     pub handles: Vec<Handle>,
     /// Ways to type the requested place.
     pub ways: Vec<Way>,

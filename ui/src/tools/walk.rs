@@ -149,7 +149,8 @@ pub fn room(state: &WalkState, reading: &Reading<'_>) -> Option<Bounds2> {
     Some(Bounds2::of(places))
 }
 
-/// Arc length along the seam: the typed one if there is one, else the walked one (m).
+/// Arc length along the first side of the seam at which the pieces are to touch (m): the typed one, or
+/// without typed text the one that was walked to.
 ///
 /// # Errors
 /// The typed text gives no length.
@@ -322,7 +323,8 @@ fn contact_words(seen: &Seen<'_>, contact: &Contact) -> String {
     )
 }
 
-/// Adds the marks for the piece that is laid against the one that stays: ghost and outline.
+/// Adds the marks for the piece that is laid against the one that stays: its ghost and notches, and the seam
+/// line on both pieces.
 fn ghost(
     seen: &Seen<'_>,
     (contact, fixed): (&Contact, FixedSide),
@@ -360,7 +362,7 @@ fn ghost(
     }
 }
 
-/// Maps a corner of a fill.
+/// Moves a corner of the triangles that fill a piece to where the piece is laid.
 fn mapped(laid: &Affine, at: [f32; 2]) -> [f32; 2] {
     let at = laid.apply(Vec2::from(at.map(f64::from)));
     [at.x as f32, at.y as f32]
@@ -410,8 +412,8 @@ pub fn crossing_lines(
     told.collect()
 }
 
-/// Adds the text at an end of the seam; if the pieces touch there, also the tangents of the lines that
-/// cross the seam.
+/// Adds the text at an end of the seam about the line that crosses it there; if the pieces touch there, also
+/// the tangents of that line.
 fn mark_joint(
     seen: &Seen<'_>,
     joint: &Joint,

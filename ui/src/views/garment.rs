@@ -40,7 +40,7 @@ pub struct GarmentView {
     vertices: usize,
     stale: Stale,
     wants_fit: bool,
-    /// Size of the view for which the mannequin was fitted, until the user pans or zooms.
+    /// Size of the view to which the mannequin was fitted; `None` once the user has panned or zoomed.
     fitted: Option<egui::Vec2>,
     drawn: Option<Drawn>,
 }
@@ -80,7 +80,7 @@ impl GarmentView {
         self.wants_fit |= first;
     }
 
-    /// Sets the garment at one moment.
+    /// Sets the garment to the state in a frame of its drape.
     pub fn set_frame(&mut self, frame: LiveFrame) {
         let known = self.look.take();
         let known = known.filter(|(job, _)| Arc::ptr_eq(job, &frame.job));

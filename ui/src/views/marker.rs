@@ -14,9 +14,9 @@ use toile_session::{DocumentMarker, MarkerState, Pose};
 
 /// Gap between waiting pieces beside the fabric (m).
 const GAP: f64 = 0.03;
-/// Distance within which a dropped piece is moved against its neighbour (pixels), with its least and
-/// largest value (m).
+/// Distance within which a dropped piece is moved against its neighbour (pixels).
 const REACH: f64 = 10.0;
+/// Least and largest value of that distance on the fabric (m).
 const REACHES: [f64; 2] = [0.003, 0.02];
 /// Quarter of a turn (rad).
 const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
@@ -370,8 +370,8 @@ impl MarkerView {
         actions
     }
 
-    /// Treatment of pieces dropped now: pieces that are close on the screen, and within 3 to 20 mm on the
-    /// fabric, are moved together; with Alt they stay as they are dropped.
+    /// Treatment of pieces dropped now: they are moved against a neighbour within 10 pixels on the screen, on
+    /// the fabric at least 3 and at most 20 mm; with Alt they stay where they are dropped.
     fn let_go_as(&self, ui: &Ui) -> LetGoAs {
         match ui.input(|input| input.modifiers.alt) {
             true => LetGoAs::Left,

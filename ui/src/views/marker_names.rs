@@ -18,10 +18,11 @@ const SMALL_NAMES: [f32; 2] = [13.0, 10.5];
 const MIN_PIECE_SIZE: f64 = 12.0;
 /// Largest number of names with a leader line.
 const MAX_LEADERS: usize = 100;
-/// Distances between a name outside and its piece (pixels), and number of directions that are tried.
+/// Distances that are tried between a piece and its name outside the piece (pixels).
 const DISTANCES: [f32; 6] = [10.0, 20.0, 34.0, 50.0, 70.0, 95.0];
+/// Number of directions from a piece that are tried for its name.
 const DIRECTIONS: usize = 16;
-/// White margin round an outside name (pixels).
+/// Empty margin round a name outside its piece (pixels).
 const MARGIN: f32 = 2.0;
 
 impl MarkerView {

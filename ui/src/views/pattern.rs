@@ -94,7 +94,7 @@ pub struct PatternView {
     /// Response of the canvas for a context menu; `None` while a tool is in progress.
     pub canvas: Option<Response>,
     pressed: Option<Pointer>,
-    /// Position of the pointer, and modifier keys, in the last hover event.
+    /// Position of the pointer, and modifier keys, in the last hover or drag event.
     told: Option<(Pos2, ToolModifiers)>,
     /// Whether another widget had the focus in the last frame.
     was_typed_into: bool,
@@ -103,7 +103,7 @@ pub struct PatternView {
     revealed: Option<revealed::Revealed>,
     /// Size of the view to which everything was fitted; `None` once the user has panned or zoomed.
     fitted: Option<egui::Vec2>,
-    /// The walked seam for whose pieces the table was moved.
+    /// The walked seam whose pieces were brought into view: this is done once for each walk.
     walked: Option<SeamId>,
     /// Camera before the table was moved for a walk.
     before_walk: Option<TableCamera>,

@@ -8,7 +8,7 @@ use toile_pattern::Evaluation;
 
 impl PatternView {
     /// At the start of a walk, moves the table so that both pieces will be visible at every position of the
-    /// walk; the table does not move again during the walk.
+    /// walk; later the pointer does not move the table, only a key can.
     pub(super) fn make_room(&mut self, ui: &Ui, view: Rect, evaluation: &Evaluation) {
         let State::Walk(state) = &self.state else {
             self.walked = None;
