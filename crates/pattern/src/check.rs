@@ -28,15 +28,16 @@ use toile_geometry::{Rings, Vec2};
 const GAP: f64 = 1e-6;
 /// Length below which an edge counts as having no length (m).
 const SHORTEST: f64 = 1e-6;
-/// Greatest distance of a polyline from the curve that it stands for (m).
+/// Greatest distance between a curve and the polyline by which it is checked (m).
 const FLATNESS: f64 = 5e-5;
 /// Difference between the lengths of a seam's sides that needs no ease (m): less than a stitch.
 pub const SEAM_TOLERANCE: f64 = 5e-4;
-/// Distance by which an internal line may reach outside its panel (m).
+/// Greatest distance from its panel at which a point of an internal line still counts as inside (m).
 const LINE_TOLERANCE: f64 = 1e-5;
 /// Most crossings that are reported for one piece.
 const CROSSINGS: usize = 5;
-/// Number of points at which one internal line is checked.
+/// Limit of the number of points at which one internal line is checked. A line that does not reach the limit
+/// is checked every 5 mm.
 const LINE_SAMPLES: usize = 500;
 
 impl Pattern {
@@ -66,9 +67,9 @@ impl Evaluation {
         diagnostics
     }
 
-    /// Diagnostics of the choice of sides of the cloth: seams that take another copy of a panel than the
-    /// document gives, so that pieces show their right sides, and pieces that show their wrong side all the
-    /// same.
+    /// Diagnostics about the side of the cloth that pieces show: panels whose seams take another copy than
+    /// the document gives, so that pieces show their right sides, and pieces that still show their wrong
+    /// side.
     pub fn check_sides(&self) -> Vec<Diagnostic> {
         let drafting = self.drafting();
         let mut found = drafting.diagnostics;
@@ -78,7 +79,7 @@ impl Evaluation {
     }
 }
 
-/// Reports each pleat that takes in cloth: pleats are not folded and pressed when the garment is draped.
+/// Adds a note for each pleat that takes in cloth: the drape does not fold and press pleats.
 fn note_pleats(panel: &Panel, idle: &[OperationId], diagnostics: &mut Vec<Diagnostic>) {
     for operation in &panel.operations {
         let is_pleat = matches!(operation.kind, OperationKind::Pleat { .. });
@@ -348,7 +349,8 @@ impl PieceCheck<'_> {
         bad.is_none()
     }
 
-    /// Checks that each edge has a length and ends where the next edge starts.
+    /// Reports gaps between the edges of a loop, edges without length, and negative seam allowances. Returns
+    /// whether the loop has no gap.
     fn check_loop(&mut self, edges: &[PieceEdge]) -> bool {
         let mut closed = true;
         for (k, edge) in edges.iter().enumerate() {
@@ -492,7 +494,7 @@ impl PieceCheck<'_> {
     }
 }
 
-/// Loops as polylines: each point has the index of its edge, counted on from one loop to the next.
+/// Loops as polylines. Each point has the index of its edge; edges are numbered through all loops.
 fn flattened(loops: &[&[PieceEdge]]) -> Vec<Vec<(Vec2, usize)>> {
     let mut edge = 0;
     let mut result = Vec::with_capacity(loops.len());

@@ -72,13 +72,13 @@ pub enum Code {
     HoleOutside,
     /// The fold line is not a straight edge of the outline.
     BadFold,
-    /// An internal line leaves its panel.
+    /// An internal line reaches outside its panel.
     LineOutside,
     /// A dart is wider than its edge, or overlaps another.
     DartTooWide,
     /// A dart's apex lies outside its panel.
     DartOutside,
-    /// A dart is not trued: no smooth line leads across its mouth.
+    /// A dart cannot be trued: no smooth line leads across its mouth, or its legs would change too much.
     NotTrued,
     /// An edge that continues across a dart, a pleat or a seam has a kink there.
     Kink,
@@ -105,9 +105,9 @@ pub enum Code {
     BadFabric,
     /// A seam allowance or other length is negative.
     Negative,
-    /// A corner of the cut line is too sharp for a mitre and is cut off.
+    /// A corner of the cut line is too sharp for a mitre: the mitre is cut off.
     SharpCorner,
-    /// A corner of the cut line is too blunt for its kind and is mitred.
+    /// A corner of the cut line is too blunt for the shape that is asked for: it is mitred instead.
     BluntCorner,
     /// Along an edge the seam allowance runs into other cloth.
     AllowanceSwallowed,
@@ -117,7 +117,7 @@ pub enum Code {
     SlitShut,
     /// A hole is filled or divided by its seam allowance.
     HoleShut,
-    /// The mouth of a dart is cut straight across.
+    /// The cut line cannot follow the cloth of a folded dart: it runs straight across the mouth.
     StraightDart,
     /// Notches are cut less deep than usual.
     NotchShort,

@@ -229,7 +229,7 @@ impl Drafter<'_> {
         value
     }
 
-    /// Seams that close darts, in the order of pieces.
+    /// Adds the seams that close darts, in the order of pieces.
     fn darts(&mut self) {
         let pattern = self.evaluation.pattern();
         let mut seams = Vec::new();
@@ -277,8 +277,8 @@ impl Drafter<'_> {
         self.drafting.draft.seams = seams;
     }
 
-    /// Seams of the document, on those copies and halves of panels with which the pieces show their right
-    /// sides.
+    /// Adds the seams of the document, on the copies and halves of panels with which the pieces show their
+    /// right sides.
     fn seams(&mut self) {
         let evaluation = self.evaluation;
         let seams = evaluation.pattern().seams.iter();
@@ -339,7 +339,7 @@ impl Drafter<'_> {
         self.tell_exchanges((&walked, &spans), &exchanged);
     }
 
-    /// A span of a seam as stretches of edges of its piece, in walking order.
+    /// The stretches of edges of its piece that a span covers, in walking order.
     fn spans(&self, span: &SpanValue) -> Vec<DraftSpan> {
         let Some((piece, tracks)) = self.tracks.get(&piece_id(span)) else {
             return Vec::new();
@@ -366,8 +366,8 @@ impl Drafter<'_> {
         (self.spans(&there).len() == count).then_some(twin)
     }
 
-    /// Reports the seams for which another copy or half is taken than the document gives, with one note for
-    /// each panel.
+    /// Reports, with one note for each panel, the seams that take another copy or half of the panel than the
+    /// document gives.
     fn tell_exchanges(
         &mut self,
         (walked, spans): (&[(&Seam, &SeamValue)], &[SeamSpan<'_>]),
@@ -392,8 +392,8 @@ impl Drafter<'_> {
         }
     }
 
-    /// Marks the pieces that seams join as sewn; without a seam, the first piece if all pieces are copies of
-    /// one panel.
+    /// Marks the pieces that seams join as sewn. If no seam joins pieces, and all pieces are copies of one
+    /// panel, the first piece is marked.
     fn mark_sewn(&mut self) {
         let draft = &mut self.drafting.draft;
         for seam in &draft.seams {
@@ -418,12 +418,11 @@ fn piece_id(span: &SpanValue) -> PieceId {
     }
 }
 
-/// An edge made by an operation, as the seam that closes it walks it: role, index, and whether the edge is
-/// walked backwards.
+/// An edge of a dart, as it is walked in the seam that closes the dart: role, index, and whether it is walked
+/// backwards.
 type Walked = (Role, u16, bool);
 
-/// Both sides of the seam with which an operation closes the edges that it made. `None`: the operation makes
-/// no seam.
+/// Both sides of the seam that closes the dart an operation makes. `None`: the operation makes no dart.
 fn closing(kind: &OperationKind) -> Option<[Vec<Walked>; 2]> {
     let leg = |index: u16, reverse: bool| (Role::Leg, index, reverse);
     match kind {
@@ -451,7 +450,8 @@ fn folds(panel: &Panel) -> u32 {
     (folds.count() as u32).min(7)
 }
 
-/// The parts of a piece's edges between two shares of a named edge, in walking order.
+/// Stretches of the edges of a piece that lie between the shares `from` and `to` of a named edge, in walking
+/// order. `tracks` are the stretches of that edge on the piece.
 fn spans_on<'t>(
     piece: usize,
     tracks: impl Iterator<Item = &'t Track>,

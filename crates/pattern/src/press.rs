@@ -6,9 +6,10 @@ use crate::{
     StageLine,
 };
 
-/// Distance of an arrow from the edge, over the length of the dart or pleat (1).
+/// Distance of an arrow from the edge in which the dart or pleat opens, as a share of its length (1).
 const IN: f64 = 0.3;
-/// Number of lines that a pleat has: fold lines, and lines that the folds are laid to.
+/// Number of indices that each pleat has for the names of its lines: fold lines, and lines that the folds are
+/// laid to.
 const LINES: u16 = 5;
 
 /// The arrows of the darts and pleats of a panel.
@@ -72,7 +73,7 @@ fn pleat_arrows(
     let Some(middle) = at(placement) else {
         return;
     };
-    // The creases next to the placement line, along which the cloth under the fold turns back.
+    // The creases next to the placement line: there the cloth that lies under the pleat is folded back.
     let turns = stage.lines.iter().filter_map(|line| match line.name {
         Name::Made {
             by,

@@ -1,5 +1,5 @@
 //! The cloth of a marker as journals write it: with its fabric and with defaults written out. Settings that
-//! are given but equal to their default are listed by name, so that they stay given.
+//! are given but equal to their default are listed by name, which tells them from settings that are not given.
 
 use super::{ClothSettings, Flaw, NapRule, Print, Roll, Spread};
 use crate::FabricId;

@@ -197,8 +197,9 @@ fields!(Roll, |self, v| {
     given_list!(v, flaws);
 });
 
-/// Settings of how fabric is laid to be cut. A setting that is not given (`None`) is taken from the next
-/// lower level: other settings, then the fabric, then the default.
+/// Settings of how fabric is laid to be cut. A setting that is not given (`None`) is taken from more general
+/// settings ([`ClothSettings::over`]); if these do not give it either, from the fabric or the default
+/// ([`ClothSettings::resolved`]).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClothSettings {
     /// Full width of the fabric laid open (m); for a tube its girth.
@@ -338,8 +339,8 @@ impl ClothSettings {
         }
     }
 
-    /// The settings for laying a fabric: settings that are not given are taken from the fabric `own`, else
-    /// from the defaults. `None`: neither the settings nor the fabric give a width.
+    /// The settings for laying a fabric. Settings that are not given are taken from the fabric `own` or, if
+    /// it does not have them, from the defaults. `None`: neither the settings nor the fabric give a width.
     pub fn resolved(&self, own: Option<&Fabric>) -> Option<LaidCloth> {
         let spread = self.spread.unwrap_or_default();
         let own_nap = match own.is_some_and(|fabric| fabric.nap) {

@@ -66,7 +66,7 @@ impl GuideRun {
         }
     }
 
-    /// Name of the direction for messages.
+    /// Name of a guide with this direction, for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::Horizontal => "horizontal guide",

@@ -8,15 +8,15 @@ use std::sync::Arc;
 /// operations, beginning with the panel that it was split from.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StageLineage {
-    /// Each stage: its panel, the last operation done (`None`: the panel as drawn), and the operation that
-    /// makes the stage.
+    /// Each stage: its panel, the last operation of that panel that is done (`None`: none is done yet), and
+    /// the operation that makes the stage (`None`: the panel is as drawn).
     stages: Vec<(PanelId, Option<OperationId>, Option<OperationId>)>,
     /// Index of the stage at which the panel itself starts, before any operation of its own.
     pub base: usize,
 }
 
 impl StageLineage {
-    /// Panel of a stage, and the last operation done (`None`: the panel as drawn).
+    /// Panel of a stage, and the last operation of that panel that is done (`None`: none is done yet).
     pub fn stage(&self, step: usize) -> Option<(PanelId, Option<OperationId>)> {
         self.stages.get(step).map(|stage| (stage.0, stage.1))
     }

@@ -37,7 +37,8 @@ pub struct Marker {
     pub id: MarkerId,
     /// Name to show, unique among markers.
     pub name: String,
-    /// The fabric whose pieces are laid.
+    /// The fabric whose pieces are laid: pieces of panels that are cut from it, and pieces that a rule cuts
+    /// from it.
     pub fabric: FabricId,
     /// Whether all pieces lie on this fabric, even if the garment is cut from another.
     pub keeps_fabric: bool,
@@ -45,7 +46,7 @@ pub struct Marker {
     pub cloth: ClothSettings,
     /// Rules for single pieces.
     pub rules: Vec<PieceRule>,
-    /// Sets of marks that lie on the same place of the print.
+    /// Sets of marks. All marks of a set must lie on the same place of the print.
     pub matched: Vec<MatchedMarks>,
     /// Number of garments of each size.
     pub order: Vec<OrderedSize>,
@@ -236,7 +237,8 @@ fields!(PiecePlacement, |self, v| {
     v.value(key("roll").left_out_if(*roll == 0), roll);
 });
 
-/// A property of a marker that differs because it does not follow the fabric that the garment is cut from.
+/// A property in which a marker differs from the fabric that the garment is cut from, because the marker has
+/// a value of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MarkerKeeps {
     /// The fabric.

@@ -289,7 +289,8 @@ impl Pattern {
         self.size_named(name).map(|size| &size.measurements)
     }
 
-    /// The base size: the one that is chosen, else the first.
+    /// The base size: the chosen size if there is one, otherwise the first size. `None`: the pattern has no
+    /// sizes.
     pub fn base(&self) -> Option<&Arc<Size>> {
         let chosen = self
             .sizes

@@ -154,7 +154,7 @@ pub enum OperationKind {
         /// side.
         pressed: Side,
         /// Whether the pleats are trued: the end of each underlay is cut along the edge that it lies under
-        /// when folded, else straight across.
+        /// when folded. If they are not trued, it is cut straight across.
         #[serde(default = "is_trued")]
         trued: bool,
     },
@@ -236,7 +236,7 @@ fields!(
     },
 );
 
-/// Value for pleats in journals that lack the field: they are trued.
+/// Value of `trued` for pleats in journals that lack this field.
 fn is_trued() -> bool {
     true
 }

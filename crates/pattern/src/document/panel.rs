@@ -9,7 +9,7 @@
 //! - [`crate::draft::Worn::mirror_image`]: which part of the body the mirrored piece is worn on;
 //! - [`crate::plan::numbers_of`]: its numbers for the window.
 //!
-//! Upright where a panel has no grain; a side of a split has its own.
+//! The grain is upright if a file does not give it. A side of a split panel has a grain of its own.
 
 use crate::fields::{Choice, Clash, ITSELF, Told, ValueField, angle, group, key, length};
 use crate::{
@@ -322,7 +322,7 @@ impl Default for Cut {
     }
 }
 
-/// One example for each form in which files write it: a number, `"pair"`, both fields.
+/// One example for each form in which files write a cut: a number, `"pair"`, or both fields.
 impl IntoEnumIterator for Cut {
     type Iterator = std::array::IntoIter<Self, 3>;
 

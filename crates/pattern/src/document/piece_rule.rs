@@ -5,11 +5,11 @@ use crate::{FabricId, NotchId, PanelId, fields};
 use serde::{Deserialize, Serialize};
 use strum::EnumIter;
 
-/// Declares [`LayingRule`], and all that treats its fields alike.
+/// Declares [`LayingRule`], and the methods that treat all its fields alike.
 macro_rules! laying_rule {
     ($($(#[$about:meta])* $field:ident: $type:ty,)*) => {
         /// Rule for laying a piece, in addition to the settings of its fabric. A field that is not given is
-        /// taken from a rule that covers more pieces, else from the default.
+        /// taken from a rule that covers more pieces; if no such rule gives it, the default holds.
         #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
         #[serde(default)]
         pub struct LayingRule {
@@ -17,14 +17,15 @@ macro_rules! laying_rule {
         }
 
         impl LayingRule {
-            /// This rule completed by a rule for more pieces: fields left open here are taken from the rule below.
+            /// This rule, with fields that are left open taken from `below`, a rule that covers more pieces.
             #[must_use]
             pub fn over(self, below: &Self) -> Self {
                 let below = below.clone();
                 Self { $($field: self.$field.or(below.$field),)* }
             }
 
-            /// Takes over the fields in which two states of another rule differ, as the second state has them.
+            /// Copies from `now` the fields in which it differs from `before`, an earlier state of the same
+            /// rule.
             pub fn take_changes(&mut self, before: &Self, now: &Self) {
                 $(if before.$field != now.$field {
                     self.$field.clone_from(&now.$field);
@@ -47,7 +48,7 @@ laying_rule! {
     turn_over: bool,
     /// Whether half of the piece lies on the fold, if both the fabric and the panel are folded.
     on_fold: bool,
-    /// Whether the piece may hide flaws.
+    /// Whether the piece may be cut from flawed fabric, as a pocket bag, which nobody sees.
     over_flaws: bool,
     /// Whether the hem and the middle of the piece are aligned with the print.
     on_print: bool,
@@ -58,9 +59,9 @@ laying_rule! {
 pub struct RuleFlag {
     /// Label in the window.
     pub label: &'static str,
-    /// The flag of a rule.
+    /// Returns the flag in a rule.
     pub of: fn(&mut LayingRule) -> &mut Option<bool>,
-    /// Value where no rule says it, on a marker that has matched marks or has none.
+    /// Value of the flag if no rule gives it; `has_marks`: the marker has matched marks.
     pub usual: fn(has_marks: bool) -> bool,
 }
 
@@ -115,7 +116,7 @@ fields!(LayingRule, |self, v| {
 });
 
 impl LayingRule {
-    /// The first field with which no piece can be laid: the fault, and the advice.
+    /// Fault of the first field whose value is not allowed: its description, and advice.
     pub fn fault(&self) -> Option<(String, &'static str)> {
         let lengths = [
             ("gap", self.gap),

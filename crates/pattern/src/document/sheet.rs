@@ -24,7 +24,7 @@ pub struct Sheet {
     /// Name to show and for formulas.
     pub name: String,
     /// The stage of a panel that the sheet lies on: the panel after the given operation, or as drawn if the
-    /// operation is `None`. `None` as a whole: the sheet is free.
+    /// operation is `None`. `None` as a whole: the sheet lies on no panel.
     pub on: Option<(PanelId, Option<OperationId>)>,
     /// Position of the sheet's origin on the table (m).
     pub on_table: [f64; 2],

@@ -84,7 +84,8 @@ pub struct SheetHead {
     pub id: SheetId,
     /// Name to show and for formulas.
     pub name: String,
-    /// The panel stage that the sheet lies on; `None`: the sheet is free.
+    /// The panel stage that the sheet lies on, as in [`Sheet::on`](crate::Sheet::on); `None`: it lies on no
+    /// panel.
     pub on: Option<(PanelId, Option<OperationId>)>,
     /// Position of the sheet's origin on the table (m).
     pub on_table: [f64; 2],
@@ -145,7 +146,7 @@ impl Entity {
         })
     }
 
-    /// Name of the part; guides have no name, for them their kind.
+    /// Name of the part. A guide has no name: for it, the name of its direction.
     pub fn name(&self) -> &str {
         match self {
             Self::Head(head) => &head.name,

@@ -49,8 +49,8 @@ impl From<&Sheet> for SheetHead {
 }
 
 impl Entity {
-    /// The part in the entity, to be visited. The head of a sheet is written into `sheet`, since only whole
-    /// sheets can be visited.
+    /// The part in the entity, for a visitor of its fields. The head of a sheet is written into `sheet`,
+    /// since only whole sheets can be visited.
     fn part<'e>(&'e self, sheet: &'e mut Sheet) -> &'e dyn Fields {
         match self {
             Self::Head(head) => head,
@@ -70,7 +70,7 @@ impl Entity {
         }
     }
 
-    /// Calls `change` with the part of the entity.
+    /// Calls `change` with the part in the entity.
     pub(crate) fn change(&mut self, change: &mut dyn FnMut(&mut dyn Fields)) {
         match self {
             Self::Head(head) => change(head),
@@ -146,7 +146,8 @@ impl Entity {
 }
 
 impl Pattern {
-    /// All parts as entities, each with its diagnostic place.
+    /// Variables, points, curves, panels, seams, markers and guides as entities, each with its diagnostic
+    /// place.
     pub fn entities(&self) -> Vec<(Entity, Place)> {
         let mut all: Vec<(Entity, Place)> = Vec::new();
         let mut put = |entity: Entity, place: Place| all.push((entity, place));
@@ -221,7 +222,8 @@ impl Pattern {
         }
     }
 
-    /// Diagnostic places of all parts that refer to a part, by its id or by its name.
+    /// Diagnostic places of the parts that refer to a part, by its id or by its name; the parts searched are
+    /// those of [`Pattern::entities`].
     pub fn users(&self, part: PartId) -> Vec<Place> {
         let names = Names::new(self);
         let by_name = |entity: &Entity| {

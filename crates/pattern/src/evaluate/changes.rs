@@ -8,11 +8,12 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 impl Evaluation {
-    /// Sets the definitions that differ from the pattern `before`, and returns the numbers of their nodes.
+    /// Sets the definitions that differ from those in the pattern `before`. Returns the numbers of the nodes
+    /// that may have other values or dependencies now.
     pub(super) fn take_over(&mut self, before: &Pattern) -> Vec<u32> {
         let pattern = self.pattern.clone();
         let mut changed: Vec<u32> = Vec::new();
-        // Sheets that are new, or that lie on another panel stage than before.
+        // Sheets that are new, that are removed, or that lie on another panel stage than before.
         let mut laid: Vec<Arc<Sheet>> = Vec::new();
         let same = |a: usize, b: usize, equal: &dyn Fn(usize) -> bool| a == b && (0..a).all(equal);
         if !same(pattern.variables.len(), before.variables.len(), &|k| {
@@ -222,8 +223,8 @@ impl Evaluation {
         }
     }
 
-    /// Registers the panels whose lines decide the dependencies of a node: when these lines change, the
-    /// dependencies are found again. Panels registered before are dropped.
+    /// Registers the panels that decide on which other nodes the node `k` depends: when such a panel changes,
+    /// the dependencies of the node are found again. Panels registered for the node before are dropped.
     fn watch(&mut self, k: u32, panels: Vec<PanelId>) {
         if self.nodes[k as usize].watches == panels {
             return;

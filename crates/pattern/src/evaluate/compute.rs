@@ -142,7 +142,8 @@ impl Computation<'_> {
         }
     }
 
-    /// The value of a measurement, else of the variable that has this name now. `None`: the word is neither.
+    /// The value of a word in formulas: that of the measurement with this name or, if there is none, of the
+    /// variable that has this name now. `None`: there is no such value.
     fn word(&mut self) -> Option<Value> {
         let evaluation = self.evaluation;
         let Node::Word(number) = evaluation.nodes[self.k as usize].node else {

@@ -153,7 +153,8 @@ impl Evaluation {
                         .iter()
                         .copied()
                         .min_by_key(|&w| match self.nodes[w as usize].node {
-                            // A word is part of a cycle through the variable with its name.
+                            // A word is in a cycle only because of the variable with its name: the diagnostic
+                            // is about that variable instead.
                             Node::Word(_) => (true, Node::Word(0)),
                             node @ (Node::Variable(_)
                             | Node::Point(_)
@@ -182,12 +183,13 @@ impl Evaluation {
         }
     }
 
-    /// Recomputes nodes and the nodes that depend on them, in order.
+    /// Recomputes these nodes and all nodes that depend on them, in the order of their ranks.
     fn recompute(&mut self, dirty: HashSet<u32>) -> Update {
         self.recompute_among(dirty, |_| true)
     }
 
-    /// Recomputes those of these nodes and of their dependants for which `wanted` is true, in order.
+    /// Recomputes these nodes and all nodes that depend on them, in the order of their ranks, except nodes
+    /// for which `wanted` is false.
     fn recompute_among(&mut self, dirty: HashSet<u32>, wanted: impl Fn(u32) -> bool) -> Update {
         let mut update = Update::default();
         let mut waiting: HashSet<u32> = dirty.into_iter().filter(|&k| wanted(k)).collect();

@@ -52,14 +52,18 @@ pub struct Evaluation {
     pattern: Pattern,
     wearer: Arc<Wearer>,
     nodes: Vec<Arc<NodeState>>,
+    /// Number of each node, which is its index in `nodes`.
     index: Arc<HashMap<Node, u32>>,
+    /// Number of each word that formulas have used so far.
     words: HashMap<Box<str>, u32>,
+    /// The words, by their numbers.
     word_texts: Vec<Box<str>>,
-    /// For each panel, the nodes whose dependencies are decided by the lines of the panel.
+    /// For each panel, the nodes whose dependencies the panel decides: they are found again when it changes.
     watchers: Arc<HashMap<crate::PanelId, HashSet<u32>>>,
     names: Arc<crate::formula::Names>,
     /// Diagnostics of ids and names that are used twice.
     duplicates: Vec<Diagnostic>,
+    /// Number of updates so far.
     revision: u64,
 }
 
@@ -92,8 +96,8 @@ impl Evaluation {
         &self.wearer
     }
 
-    /// The size of the pattern that the wearer is, for numbers with values of their own in a size. `None`:
-    /// the wearer is no size of the pattern.
+    /// The size of the pattern whose measurements the wearer has: numbers take the values that they have for
+    /// this size. `None`: the measurements are those of no size.
     pub fn size(&self) -> Option<crate::SizeId> {
         self.wearer.size
     }
@@ -103,7 +107,7 @@ impl Evaluation {
         &self.names
     }
 
-    /// All diagnostics of the evaluation: faults of definitions, each reported once at its cause.
+    /// All diagnostics of the evaluation: faults of definitions, each reported only at its cause.
     pub fn diagnostics(&self) -> Vec<Diagnostic> {
         // Faults of a word that no formula uses any longer are left out.
         let is_used = |state: &NodeState| match state.node {
@@ -127,8 +131,8 @@ impl Evaluation {
         duplicates.chain(own).chain(markers).collect()
     }
 
-    /// Sort key of a node, independent of the order in which nodes were made: words by their texts come
-    /// first, then parts.
+    /// Sort key of a node, independent of the order in which nodes were made: parts come first, then words by
+    /// their texts.
     fn place_in_order(&self, state: &NodeState) -> Result<Node, &str> {
         match state.node {
             Node::Word(word) => Err(&self.word_texts[word as usize]),
@@ -174,8 +178,8 @@ impl Evaluation {
         }
     }
 
-    /// A stage of a panel: after the operation `after`, or as drawn if that is `None`. `None`: the stage
-    /// cannot be computed.
+    /// A stage of a panel: the panel after the operation `after`, or as drawn if `after` is `None`. Returns
+    /// `None` if the stage cannot be computed.
     pub fn stage(
         &self,
         panel: crate::PanelId,

@@ -8,7 +8,7 @@ use crate::{
     Pattern, PointId, PointRule, Source, StageLineage, WornRule,
 };
 
-/// The nodes that a definition depends on, and the panels whose lines decide these dependencies.
+/// The nodes and words that a definition depends on, and the panels that decide which nodes these are.
 pub(crate) struct Needs<'d> {
     pattern: &'d Pattern,
     names: &'d Names,
@@ -162,8 +162,8 @@ impl<'d> Needs<'d> {
         self.pattern.stage_lineage(panel)
     }
 
-    /// Adds the dependencies of the mark's number, and the stage that the mark is placed on if that stage
-    /// comes before the first `before` operations of the panel are done.
+    /// Adds the dependencies of the mark's number, and the stage on which the mark is placed. With `before`,
+    /// the stage is added only if fewer than this many operations of the panel are done on it.
     fn mark(&mut self, panel: &Panel, mark: &Mark, before: Option<usize>) {
         let lineage = self.stage_lineage(panel);
         self.numbers(match mark {
@@ -241,7 +241,8 @@ impl<'d> Needs<'d> {
     }
 }
 
-/// The drawn edges between two corners of one line. `None`: an operation made one of the corners.
+/// The drawn edges from one corner of a line to a later corner. `None`: an operation made one of the corners,
+/// or they are not corners of one line in this order.
 pub(crate) fn drawn_stretch(lines: &[Line], ends: [CornerName; 2]) -> Option<Vec<&Edge>> {
     let [Name::Drawn(from), Name::Drawn(to)] = ends else {
         return None;

@@ -97,13 +97,13 @@ pub(crate) struct NodeState {
     pub definition: Definition,
     pub needs: Vec<u32>,
     pub needed_by: Vec<u32>,
-    /// Panels whose lines decide the dependencies of the node.
+    /// Panels that decide on which other nodes the node depends.
     pub watches: Vec<PanelId>,
     /// Rank in the order of computation: higher than the ranks of all nodes it depends on, except in a cycle.
     pub rank: u32,
     /// If the node is in a cycle: a node of that cycle, which stands for the whole of it.
     pub cycle: Option<u32>,
-    /// The value; else the number of the node whose fault keeps this node from having a value.
+    /// The value. `Err`: the number of the node whose fault keeps this node from having a value.
     pub value: Result<Value, u32>,
     /// The last value that could be computed, shown while there is none now.
     pub last_good: Option<Value>,

@@ -11,9 +11,9 @@ use crate::{
 use std::borrow::Cow;
 use toile_geometry::{Path, Vec2};
 
-/// Bound of all lengths of a pattern (m): a longer one is refused.
+/// Greatest length in a pattern (m): a longer one is refused.
 const LONGEST: f64 = 1000.0;
-/// Bound of all plain numbers and angles of a pattern (1), (rad): a larger one is refused.
+/// Greatest plain number (1) and greatest angle (rad) in a pattern: a larger one is refused.
 const LARGEST: f64 = 1e6;
 
 /// The computation of one node. It reads values of other nodes and collects diagnostics.
@@ -49,8 +49,8 @@ impl Evaluation {
         value.ok_or_else(|| fault.unwrap_or_else(|| "it has no value yet".into()))
     }
 
-    /// The kind of a number for which all kinds are allowed, such as a variable's: a length, an angle, else
-    /// plain.
+    /// The quantity of a number that may be of any quantity, such as that of a variable: a length or an
+    /// angle, otherwise plain. A number without value counts as plain.
     pub fn kind(&self, number: &Number) -> Want {
         let mut computation = Computation::new(self);
         match computation.variable(number) {
@@ -276,7 +276,7 @@ fn missing(node: Node) -> Failure {
     )
 }
 
-/// The values that formulas look up while a node is computed.
+/// Looks up the values that a formula names, in the evaluation to which the computed node belongs.
 struct Reading<'c, 'e>(&'c Computation<'e>);
 
 impl Reading<'_, '_> {
@@ -285,7 +285,8 @@ impl Reading<'_, '_> {
         Failure::new(Code::MissingReference, message, hint)
     }
 
-    /// The part itself; for an unknown name, the part that has this name now.
+    /// The part that a formula names: `part` itself or, if that is an unknown name, the part that has this
+    /// name now.
     fn bound<'p>(
         &self,
         part: &'p PartReference,

@@ -96,8 +96,8 @@ impl<'c, 'e, 'p> PanelEvaluation<'c, 'e, 'p> {
         Some(stage)
     }
 
-    /// A panel that is a side of a split panel. It has its own grain, and its own allowance for edges that
-    /// have none themselves.
+    /// The first stage of a panel that is a side of a split panel. The side has its own grain, and its own
+    /// allowance for edges that have none themselves.
     fn side(
         &mut self,
         (of, split, side): (PanelId, OperationId, Side),

@@ -9,8 +9,8 @@ use toile_measure::Measurements;
 pub struct Wearer {
     /// Measurements of the wearer: lengths (m) and angles (rad).
     pub measurements: Measurements,
-    /// The size of the pattern that the wearer is: numbers take their values for this size. `None`: the body
-    /// is no size of the pattern.
+    /// The size of the pattern whose measurements the wearer has: numbers take the values that they have for
+    /// this size. `None`: the measurements are those of no size.
     pub size: Option<SizeId>,
 }
 

@@ -65,7 +65,7 @@ impl Kind {
         }
     }
 
-    /// All kinds of a type, those that no field shows last; kinds that are never written are left out.
+    /// All kinds of a type, except those that are never written. A kind that no field shows comes last.
     pub fn all<T: Fields + IntoEnumIterator>(told: impl Fn(&T) -> Told) -> Vec<Self> {
         let kinds = T::iter().enumerate().map(|(variant, blank)| Self {
             told: told(&blank),

@@ -16,7 +16,8 @@
 //! - [`crate::plan::set_number`]: numbers read and set;
 //! - [`crate::plan::paste`]: copies with new ids.
 //!
-//! Files, and random patterns in `interchange/tests/random_pattern`, follow the lists.
+//! The reader and the writer of files follow these lists. Random patterns for tests are made in
+//! `interchange/tests/random_pattern`.
 
 mod choice;
 mod count;
@@ -81,7 +82,7 @@ pub trait Visitor<'a> {
     fn mark(&mut self, group: Group, mark: &'a Mark);
     /// Called with a part whose fields form a group of their own.
     fn part(&mut self, group: Group, part: &'a dyn Fields);
-    /// Called with a part whose fields files write among those of its owner.
+    /// Called with a part whose fields stand in files among those of its owner.
     fn flat(&mut self, part: &'a dyn Fields);
     /// Called with fields that files write in an object of their own; `walk` visits them.
     fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn Visitor<'a>));
@@ -114,7 +115,7 @@ pub trait VisitorMut {
     fn mark(&mut self, group: Group, mark: &mut Mark);
     /// Called with a part whose fields form a group of their own.
     fn part(&mut self, group: Group, part: &mut dyn Fields);
-    /// Called with a part whose fields files write among those of its owner.
+    /// Called with a part whose fields stand in files among those of its owner.
     fn flat(&mut self, part: &mut dyn Fields);
     /// Called with fields that files write in an object of their own; `walk` visits them.
     fn object(&mut self, group: Group, walk: &mut dyn FnMut(&mut dyn VisitorMut));

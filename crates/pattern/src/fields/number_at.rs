@@ -79,7 +79,7 @@ pub fn with_number(
     true
 }
 
-/// A path of keys and indices, as far as it is built.
+/// The path of keys and indices that leads to the field being visited.
 #[derive(Default)]
 struct Path(String);
 
@@ -103,7 +103,7 @@ impl Path {
     }
 }
 
-/// A number that was found, with its path from the root.
+/// A number that was found, with its path from the whole that was searched.
 struct FoundNumber {
     entry: NumberEntry,
     path: String,
@@ -126,12 +126,14 @@ fn found(whole: &dyn Fields, part: Option<PartId>) -> Vec<FoundNumber> {
 }
 
 struct Numbers<'a> {
+    /// The part whose numbers are wanted; `None`: all parts.
     part: Option<PartId>,
-    /// The part that is being visited, and the length of the path that leads to it.
+    /// The part whose fields are being visited.
     owner: Option<PartId>,
+    /// Length of the path that leads to this part (bytes).
     start: usize,
     path: Path,
-    /// Labels given by the group of fields: for its number, and for its number if that is a share.
+    /// Labels that the group of fields gives: for its number, and for its number if that is a share.
     labels: [Option<&'static str>; 2],
     mark: Option<&'a Mark>,
     item: Option<usize>,
@@ -231,8 +233,8 @@ impl<'a> Visitor<'a> for Numbers<'a> {
     }
 }
 
-/// Visits only the fields that lead to the wanted number: visiting any other part for changing would mark it
-/// as changed.
+/// Visits only the fields that lead to the wanted number: to visit another part for changing would copy it if
+/// it is shared, and it would count as changed.
 struct Changing<'w> {
     wanted: &'w str,
     path: Path,

@@ -10,7 +10,7 @@ use toile_measure::Measurements;
 pub struct Remap {
     /// New id of each part.
     pub ids: HashMap<PartId, PartId>,
-    /// New id of each size. For sizes that are not in the map, numbers lose their own values.
+    /// New id of each size. Values that numbers have for a size that is not in this map are dropped.
     pub sizes: HashMap<SizeId, SizeId>,
 }
 
@@ -65,8 +65,7 @@ impl Remap {
 }
 
 impl Remap {
-    /// The entity with all ids replaced, including its own. Copied fragments contain no sizes and markers, so
-    /// these are not changed.
+    /// The entity with all ids replaced, including its own. Copied fragments contain no sizes and no markers.
     pub fn entity(&mut self, mut entity: Entity) -> Entity {
         if let Some(sheet) = entity.sheet_mut() {
             *sheet = self.new_id(*sheet);

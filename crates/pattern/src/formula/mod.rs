@@ -82,7 +82,8 @@ pub enum Token {
 /// A value that a formula depends on.
 pub(crate) enum Use<'f> {
     Variable(VariableId),
-    /// A measurement, else a variable that has got this name since the formula was read.
+    /// A measurement or, if no measurement has this name, a variable that got the name after the formula was
+    /// read.
     Word(&'f str),
     Part {
         part: &'f PartReference,

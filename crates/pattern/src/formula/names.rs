@@ -32,11 +32,13 @@ pub struct Names {
     pub(super) by_id: bool,
 }
 
-/// Names of one kind of part; each name belongs to an owner, such as a sheet. If several parts of an owner
+/// Names of one kind of part, each with the owner of the part, such as a sheet. If several parts of an owner
 /// have the same name, the name stands for the first of them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Book<Owner, Id> {
+    /// Owner and name of each part.
     of: BTreeMap<Id, (Owner, Box<str>)>,
+    /// For each owner and each name, the first part of the owner with that name.
     named: BTreeMap<Owner, BTreeMap<Box<str>, Id>>,
 }
 
@@ -212,8 +214,8 @@ impl Names {
         }
     }
 
-    /// The sheet that the name of an owner stands for: the sheet of the panel with this name, else the sheet
-    /// with this name.
+    /// The sheet that the name of an owner stands for: the sheet of the panel with this name or, if there is
+    /// no such panel, the sheet with this name.
     fn sheet(&self, owner: &Owner) -> Option<SheetId> {
         let panel = self.owning_panel(owner);
         let traced = panel.and_then(|panel| self.source.get(&panel).copied());
@@ -225,7 +227,8 @@ impl Names {
         })
     }
 
-    /// The edge with this name in the owner's panel, else the curve with this name on the owner's sheet.
+    /// The edge with this name in the panel that `owner` names or, if there is none, the curve with this name
+    /// on the sheet of `owner`.
     fn edge_or_curve(&self, owner: &Owner, name: &str) -> Option<PartReference> {
         let panel = self.owning_panel(owner);
         let edge = panel.and_then(|panel| Some((panel, *self.edges.get(&panel)?.get(name)?)));

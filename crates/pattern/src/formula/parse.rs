@@ -36,7 +36,8 @@ const COMPARISONS: &[(&str, Comparison)] = &[
     ("=", Comparison::Equal),
 ];
 
-/// Bound of the text of one part in a formula (bytes): four names of 80 characters each, and quotes.
+/// Greatest length of the text that names one part in a formula (bytes): four names of 80 characters each,
+/// and quotes.
 const MAX_NAME_LENGTH: usize = 1500;
 
 struct Parser<'a> {
@@ -45,7 +46,7 @@ struct Parser<'a> {
     depth: usize,
     steps: Vec<Step>,
     tokens: Vec<Token>,
-    /// Start of the text that no token contains yet.
+    /// Position from which on the text is in no token yet (bytes).
     pending: usize,
 }
 

@@ -16,8 +16,8 @@ pub(crate) struct Colouring {
     pub root: Vec<usize>,
     /// Whether each node is of another kind than the root of its component.
     pub unlike: Vec<bool>,
-    /// For each component that has no valid colouring, by its root: the links of a short ring that contradict
-    /// each other.
+    /// For each component that has no valid colouring, by its root: the indices of links that form a short
+    /// ring and contradict each other.
     pub rings: BTreeMap<usize, Vec<usize>>,
 }
 

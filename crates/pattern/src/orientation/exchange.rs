@@ -75,7 +75,7 @@ impl SeamSpan<'_> {
     }
 }
 
-/// Decision whether a span is exchanged.
+/// The decision whether a span is exchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Taken {
     /// Whether the span is moved to the other copy or half.
@@ -238,7 +238,7 @@ impl Ties {
     }
 
     /// Links the spans of a panel within one side of a seam. If only one copy of a pair is sewn, links all
-    /// spans on it: the other copy takes its place as a whole.
+    /// spans on it, so that they move to the other copy together or not at all.
     fn tie_chains(&mut self, spans: &[SeamSpan<'_>], members: &[usize]) {
         let is_whole = members
             .windows(2)

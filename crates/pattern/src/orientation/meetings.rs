@@ -2,8 +2,8 @@
 
 use crate::{Draft, DraftSpan, Piece, PieceEdge};
 
-/// Share of a seam (1). Spans that lie opposite each other along less than this do so because the sides
-/// differ in length, not by design.
+/// Least share of a seam along which two spans must lie opposite each other to count as sewn together (1). A
+/// smaller share comes from sides that differ in length, not from the design.
 const BESIDE: f64 = 0.02;
 
 /// Two spans that lie opposite each other in a seam.

@@ -6,9 +6,11 @@ use super::words::{ring_words, turned_words};
 use crate::{Diagnostic, Draft, DraftSpan, SeamOrigin};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A pair of pieces joined by a seam: index of the seam in the draft, and how the seam turns the pieces.
+/// Two pieces that a seam joins, and how the seam turns them.
 struct Joined {
+    /// Index of the seam in the draft.
     seam: usize,
+    /// Indices of the pieces in the draft.
     pieces: [usize; 2],
     /// Whether one of the pieces shows its wrong side when the other shows its right side.
     opposite: bool,
@@ -17,8 +19,8 @@ struct Joined {
     is_fault: bool,
 }
 
-/// Diagnostics for pieces that show their wrong side, and for rings of pieces for which no choice of sides is
-/// valid.
+/// Diagnostics for pieces that show their wrong side, and for rings of pieces that cannot all show their
+/// right side, as a Moebius band.
 pub(crate) fn turned_pieces(draft: &Draft) -> Vec<Diagnostic> {
     let joined = joined(draft);
     let mut found = Vec::new();
@@ -107,8 +109,8 @@ fn links(joined: &[Joined], unlike: impl Fn(&Joined) -> bool) -> Vec<Link> {
     joined.iter().map(link).collect()
 }
 
-/// Whether the pieces `some`, not the pieces `others`, are to be reported: whichever are fewer, else have
-/// less cloth, else come later.
+/// Whether the pieces `some` are to be reported, not the pieces `others`. The fewer pieces are; if both are
+/// equally many, those with less cloth; if that is equal too, those that come later.
 fn smaller(draft: &Draft, some: &[usize], others: &[usize]) -> bool {
     let cloth = |pieces: &[usize]| -> f64 {
         let edges = pieces.iter().flat_map(|&k| &draft.pieces[k].outline);

@@ -40,7 +40,7 @@ pub(super) fn turned_words(draft: &Draft, piece: usize, seams: BTreeSet<usize>) 
     )
 }
 
-/// Diagnostic for a ring of pieces for which no choice of sides is valid.
+/// Diagnostic for a ring of pieces that cannot all show their right side.
 pub(super) fn ring_words(
     draft: &Draft,
     pieces: &BTreeSet<usize>,

@@ -56,7 +56,7 @@ impl Additions {
         Ok(id)
     }
 
-    /// Adds a curve. Without a name it gets the names of its ends as its name.
+    /// Adds a curve. Without a name it is named after its ends.
     pub fn curve(
         &mut self,
         name: Option<&str>,
@@ -88,7 +88,8 @@ impl Additions {
         Ok(id)
     }
 
-    /// A free name for a curve: the names of both ends if they are short, else a word and a number.
+    /// A free name for a curve: the names of its two ends, one after the other, if that is short; otherwise
+    /// `curve`, with a number if that name is taken.
     fn curve_name(&self, ends: [PointId; 2]) -> String {
         let name = |id| self.sheet.point(id).map_or("", |point| &*point.name);
         let both: String = ends.map(name).concat();

@@ -27,7 +27,7 @@ pub struct FinishedEdge {
     parts: Vec<Part>,
 }
 
-/// One curve of a finished edge, and the stretch of a named edge that the curve is.
+/// One curve of a finished edge. It is the stretch of the named edge `edge` between the two `shares` (1).
 #[derive(Clone, Debug, PartialEq)]
 struct Part {
     edge: EdgeName,

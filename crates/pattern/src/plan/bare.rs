@@ -21,9 +21,9 @@ enum Kind {
 #[derive(Clone, Debug)]
 struct Value {
     kind: Kind,
-    /// Columns of the numbers that get the unit if the value turns out to be a length or an angle. They are
-    /// the value's terms and choices, or those of the only factor that has such numbers; a zero needs no
-    /// unit. `None`: no unit can be given.
+    /// Columns of the numbers without unit that get one if the value turns out to be a length or an angle:
+    /// those of all terms of a sum and both branches of a condition, but of a product only those of its one
+    /// factor that has such numbers. A zero needs no unit. `None`: no unit can be given.
     bare: Option<Vec<usize>>,
     /// Whether the value contains `pi`.
     is_round: bool,
@@ -40,8 +40,8 @@ impl Value {
 }
 
 impl Value {
-    /// A product or quotient. A plain one takes a unit at its only factor that can have one. If both factors
-    /// can, it is unknown which one is meant, and neither gets a unit.
+    /// A product or quotient. If it is plain, the unit is given to the numbers of its only factor that can
+    /// have one. If both factors can, it is unknown which one is meant, and neither gets a unit.
     fn product(first: Self, second: Self, kind: impl Fn([Kind; 2]) -> Kind) -> Self {
         let kind = kind([first.kind, second.kind]);
         Self {
@@ -223,8 +223,8 @@ impl Units<'_> {
         }
     }
 
-    /// Joins two values that must be of one quantity: numbers without unit in either value take the quantity
-    /// of the other value.
+    /// Joins two values that must be of one quantity: if one of them is a length or an angle, the numbers
+    /// without unit in the other get its unit.
     fn join(&mut self, [first, second]: [Value; 2]) -> Value {
         let bare_of = |value: &Value| value.bare.clone().unwrap_or_default();
         let mut give = |plain: &Value, kind: Kind| {

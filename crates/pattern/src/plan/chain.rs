@@ -260,7 +260,8 @@ pub(super) fn swept(stretches: &[Stretch]) -> f64 {
     curves.map(|curve| curve.swept_area()).sum()
 }
 
-/// The stretches in the direction for this kind of line: outlines run counter-clockwise, holes clockwise.
+/// The stretches, reversed if necessary so that they run as this kind of line must: an outline
+/// counter-clockwise, a hole clockwise.
 pub(super) fn wound(stretches: Vec<Stretch>, kind: LineKind) -> Result<Vec<Stretch>, EditError> {
     let area = swept(&stretches);
     let wanted = match kind {

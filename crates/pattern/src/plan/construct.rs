@@ -59,7 +59,7 @@ pub fn add_sheet(
 /// along.
 ///
 /// # Errors
-/// A sheet is missing, or lies on a panel, with which it moves; a position is not finite.
+/// A sheet is missing, or it lies on a panel and moves only with that panel; a position is not finite.
 pub fn move_sheets(
     evaluation: &Evaluation,
     places: &[(SheetId, [f64; 2])],

@@ -166,8 +166,8 @@ pub fn join_edges(
     Ok(edits)
 }
 
-/// Edits that remove the corner, if it was made by dividing an edge, and the curves. Each is removed only if
-/// nothing uses it any longer; `panel` is the panel as changed.
+/// Edits that remove the corner, if it is a point on a curve, as dividing an edge makes it, and the curves.
+/// Each is removed only if nothing uses it any longer; `panel` is the panel as changed.
 fn unused(
     evaluation: &Evaluation,
     panel: &Arc<Panel>,

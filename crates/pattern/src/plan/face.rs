@@ -12,8 +12,8 @@ use toile_geometry::{Bounds2, Path, Polygon, Vec2};
 
 /// Largest distance between a curve and the polygon that approximates it (m).
 const FLAT: f64 = 1e-5;
-/// Share of the shortest stretch at a node (1): at this distance from the node the directions of stretches
-/// are compared.
+/// Distance from a node at which the directions of the stretches that meet there are compared, as a share of
+/// the shortest of them (1).
 const NEAR_NODE: f64 = 1e-3;
 
 /// A face: its outline, counter-clockwise, and its holes, clockwise.
@@ -64,8 +64,8 @@ struct Link {
     path: Path,
 }
 
-/// A walk round a face. It is a list of half-links, numbered `2 link + direction`, with the face on their
-/// left.
+/// A walk round a face, with the face on its left, as a list of half-links. Half-link `2 k` is link `k`
+/// walked forwards, half-link `2 k + 1` is the same link walked backwards.
 struct Cycle {
     halves: Vec<usize>,
     /// Signed area of the walk (m2).
@@ -81,7 +81,7 @@ struct Graph {
     /// Points at which links meet, and their positions (m).
     nodes: Vec<(PointId, Vec2)>,
     links: Vec<Link>,
-    /// Whether each link bounds a face.
+    /// Whether each link is walked. At first all are; `prune` leaves out those that bound no face.
     used: Vec<bool>,
 }
 
@@ -168,8 +168,8 @@ impl Graph {
         }
     }
 
-    /// Refuses a face in which curves cross without a point at the crossing: the face may be smaller than it
-    /// looks.
+    /// Refuses a face in which curves cross without a point at the crossing: such a crossing is no corner of
+    /// a face, so the face that is meant may be smaller.
     fn refuse_crossing(
         &self,
         evaluation: &Evaluation,

@@ -306,7 +306,8 @@ fn put(marker: Marker) -> Result<Vec<Edit>, EditError> {
     Ok(vec![Edit::Put(Entity::Marker(Arc::new(marker)))])
 }
 
-/// The edit that changes the placements of these pieces; refused if one of the pieces is locked.
+/// A copy of the marker in which `change` has changed the placements of these pieces; refused if one of the
+/// pieces is locked.
 fn changed(
     evaluation: &Evaluation,
     (id, pieces): (MarkerId, &[OrderedPiece]),
@@ -365,7 +366,7 @@ fn principal(angle: f64) -> f64 {
     }
 }
 
-/// Cosine and sine, exact for multiples of a quarter turn.
+/// Cosine and sine of an angle (rad), exact for multiples of a quarter turn.
 fn direction(angle: f64) -> [f64; 2] {
     let quarters = (angle / FRAC_PI_2).round();
     if (angle - quarters * FRAC_PI_2).abs() > 1e-12 {

@@ -2,7 +2,7 @@
 
 use crate::{EditError, NAME_LENGTH, Panel, Pattern, Sheet, is_part_name};
 
-/// The wanted name if it is free, else the wanted name and a number: `side`, `side 2`, `side 3`.
+/// The wanted name if it is free, otherwise the wanted name with a number: `side`, `side 2`, `side 3`.
 pub(super) fn free_name(wanted: &str, taken: impl Fn(&str) -> bool) -> String {
     let mut name: String = wanted.chars().take(NAME_LENGTH - 4).collect();
     let mut number = 2;

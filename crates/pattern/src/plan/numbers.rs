@@ -165,7 +165,7 @@ fn missing(place: &NumberAddress) -> EditError {
     EditError::Missing(format!("the {key} of {}", place.part))
 }
 
-/// Refuses edits with which the number at an address has a fault itself or depends on itself. A number
+/// Refuses edits after which the number at an address has a fault itself or depends on itself. A number
 /// without value because other parts are missing is accepted.
 pub(super) fn refuse_valueless(
     evaluation: &Evaluation,

@@ -85,8 +85,8 @@ fn corners(stage: &Stage) -> Vec<(LineName, CornerName)> {
     edges.collect()
 }
 
-/// The operation with which a panel inserts a sheet that lies on one of its stages: the existing one, else a
-/// new operation right after that stage.
+/// The operation with which a panel inserts a sheet that lies on one of its stages: the existing one or, if
+/// there is none, a new operation right after that stage.
 pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> OperationId {
     let own = |step: &&Arc<Operation>| step.kind.sheet() == Some(sheet.id);
     if let Some(step) = panel.operations.iter().find(own) {
@@ -108,9 +108,9 @@ pub(super) fn inserted(panel: &mut Panel, sheet: &Sheet, ids: &mut Ids) -> Opera
     id
 }
 
-/// Plans to draw a straight curve between two places on a panel's line. Its ends are points that stay at
-/// these marks. Returns the curve too. It is drawn on the panel's own sheet if no operation moved the two
-/// places, else on a sheet that lies on the finished panel.
+/// Plans to draw a straight curve between two places on a line of a panel; returns the curve too. The ends of
+/// the curve are points that stay at these places. If no operation moved the two places, it is drawn on the
+/// sheet of the panel itself, otherwise on a sheet that lies on the finished panel.
 ///
 /// # Errors
 /// The panel is missing, cannot be drawn, or is split; both places are the same.

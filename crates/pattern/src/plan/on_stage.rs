@@ -74,8 +74,8 @@ impl EdgePart {
     }
 }
 
-/// The position nearest to a point of a finished panel (m), among the edges that are wanted. `None`: the
-/// panel has no such edge.
+/// The position on the wanted edges of a finished panel that is nearest to a point (m). `None`: the panel has
+/// no such edge.
 pub(super) fn nearest_edge(
     evaluation: &Evaluation,
     panel: &Panel,

@@ -346,8 +346,8 @@ impl Pasting {
     }
 }
 
-/// A name for a pasted point: its own if it is free; else the next free letter for a point named by a letter,
-/// else its own name with a number.
+/// A name for a pasted point: its own if it is free. If not, a point that is named by a letter gets the next
+/// free letter, any other point its own name with a number.
 fn point_name(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.to_owned();

@@ -21,7 +21,8 @@ pub struct PivotWish {
     pub share: Number,
     /// Distance from the pivot point at which both darts end after the pivot (m).
     pub back: Number,
-    /// The part of the panel that is turned. `None`: the part without the fold, else the shorter part.
+    /// The part of the panel that is turned. `None`: the part that does not contain the fold, or the shorter
+    /// part if the panel has no fold.
     pub turned: Option<Turned>,
 }
 
@@ -53,8 +54,8 @@ pub fn pivot_dart(
     add_operation(evaluation, panel, kind)
 }
 
-/// The part of a panel that does not contain its fold, else the shorter part. `None`: the parts cannot be
-/// found.
+/// The part of a panel that does not contain its fold, or the shorter part if it has no fold. `None`: the
+/// parts cannot be found.
 fn freer_part(
     evaluation: &Evaluation,
     panel: &Panel,
@@ -115,7 +116,8 @@ pub struct SpreadWish {
     pub line: LineName,
     /// Start and end of each cut, and its openings at the start and at the end (m).
     pub cuts: Vec<([Mark; 2], [Number; 2])>,
-    /// A place of the panel that stays fixed. `None`: the start of the fold, else of the line.
+    /// A place of the panel that stays fixed. `None`: the start of the fold on the line, or the start of the
+    /// line if the panel has no fold there.
     pub held: Option<Mark>,
     /// Shape of the outline across the openings.
     pub bridge: Bridge,
@@ -175,7 +177,8 @@ pub struct PleatWish {
     pub kind: PleatKind,
     /// The side of its pleat line to which a knife pleat is pressed.
     pub pressed: Side,
-    /// A place of the panel that stays fixed. `None`: the start of the fold, else of the line.
+    /// A place of the panel that stays fixed. `None`: the start of the fold on the line, or the start of the
+    /// line if the panel has no fold there.
     pub held: Option<Mark>,
 }
 

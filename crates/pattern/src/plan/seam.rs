@@ -48,10 +48,10 @@ impl SeamSide {
     }
 }
 
-/// Plans to sew two chains of edges together, beginning at the start of each; returns the seam too. Edges of
-/// one panel follow each other along its line in either direction, which decides where the chain starts. A
-/// chain of single edges is walked so that right sides lie together. Without a name the seam is named after
-/// its edges.
+/// Plans to sew two chains of edges together, beginning at the start of each; returns the seam too.
+/// Consecutive edges of one panel follow each other along its line, or against it: this tells at which end
+/// the chain starts. A chain in which no edge follows another tells nothing, and is walked so that right
+/// sides lie together. Without a name the seam is named after its edges.
 ///
 /// # Errors
 /// A chain is empty; an edge, copy or half is missing, does not follow the edge before it, or is sewn to

@@ -122,8 +122,8 @@ fn cut_corner(by: OperationId, index: u16) -> CornerName {
     }
 }
 
-/// A side panel with the folds of its panel. If the cut divides a fold, the side has the stretch of the fold
-/// on it.
+/// A side panel with the folds of the panel that is split. If the cut divides a fold, the side gets the
+/// stretch of the fold that lies on it.
 fn with_folds(
     split: &Evaluation,
     (owner, by): (&Panel, OperationId),

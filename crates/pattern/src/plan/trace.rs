@@ -81,7 +81,7 @@ pub fn trace_face(
 ///
 /// # Errors
 /// A part of the chain is missing, or the chain follows two curves at once; a hole is open or encloses
-/// nothing; the kind is an outline; the name is taken or not allowed.
+/// nothing; an outline is asked for and the panel has one; the name is taken or not allowed.
 pub fn add_line(
     evaluation: &Evaluation,
     panel: PanelId,

@@ -5,12 +5,14 @@ use super::impossible;
 use crate::formula::Operation;
 use crate::{DisplayUnit, EditError, Evaluation, Formula, Number, PartReference, Token, Want};
 
-/// Decimals of a value in its unit. They are finer than any pattern needs, and few enough to hide rounding
-/// errors in the last bits.
+/// Number of decimals with which a value is written in its unit. They are finer than any pattern needs, and
+/// few enough to hide rounding errors in the last bits.
 const DECIMALS: usize = 9;
-/// Most decimals, in the value's unit, with which a value counts as typed: it is then shown as it was typed.
+/// Number of decimals to which a value in its unit is rounded to see whether it was typed. If it was, the
+/// rounded value is shown.
 const TYPED: usize = 6;
-/// Largest difference between a value and its typed decimals, in the value's unit.
+/// Largest difference between a value in its unit and that value rounded to [`TYPED`] decimals at which it
+/// counts as typed.
 const SAME: f64 = 1e-9;
 
 impl DisplayUnit {

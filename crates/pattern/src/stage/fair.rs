@@ -19,7 +19,8 @@ pub(super) struct Closing {
     pub ends: [Vec2; 2],
 }
 
-/// Row of darts: consecutive darts in one edge, and the stretches of the edge before, between and after them.
+/// Row of darts: consecutive darts that open in one edge, and the stretches of the edge before, between and
+/// after them.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     /// Curves of each stretch; there is one stretch more than there are darts.
@@ -53,7 +54,8 @@ pub(crate) enum NotTrued {
 pub(crate) const MAX_GROWTH: f64 = 2.0;
 /// Differences of angles (rad) and lengths (m) below this count as zero.
 const SAME: f64 = 1e-9;
-/// Least length of a handle, over the length of the chord, at an end whose direction is turned (1).
+/// Least length of a handle at an end of a curve whose direction is turned there, as a share of the chord of
+/// the curve (1).
 const SHORTEST_HANDLE: f64 = 0.05;
 
 impl Closing {
@@ -164,8 +166,8 @@ impl Row {
         })
     }
 
-    /// Redraws the edge with the least additional bending. At an end of a row of straight stretches the
-    /// direction is free, unless it must be kept.
+    /// Redraws the edge with the least additional bending. An end of the row is free to turn if all stretches
+    /// are straight and the edge need not keep its direction there.
     fn bent(&self) -> Option<Redrawn> {
         let is_straight = self.is_straight();
         let frees = self.keeps.map(|keeps| is_straight && !keeps);
@@ -205,7 +207,8 @@ impl Closing {
     }
 }
 
-/// A number that is an affine function of the unknowns: a constant, and the factors of some of the unknowns.
+/// A number that is an affine function of the unknowns: `constant`, plus a factor times the unknown for each
+/// of `terms`, which hold the index of the unknown and the factor.
 #[derive(Clone, Debug, Default)]
 struct Affine {
     constant: f64,
@@ -239,11 +242,14 @@ impl Knot {
     }
 }
 
-/// The additional bending of a row as a function of unknowns: length of the legs and turn of the edge at each
-/// dart, then the turns of the free ends.
+/// The additional bending of a row as a function of unknowns: for each dart the length of its legs (m) and
+/// the turn of the edge there (rad), then the turns of the free ends (rad).
 struct Beam {
+    /// Both ends of each stretch.
     knots: Vec<[Knot; 2]>,
+    /// Length of each stretch (m).
     lengths: Vec<f64>,
+    /// Number of unknowns.
     unknowns: usize,
 }
 
@@ -319,7 +325,8 @@ struct Bent<'r> {
     stretch: &'r [Curve],
     heights: [f64; 2],
     turns: [f64; 2],
-    /// Exact start and end of the stretch (m), where these are ends of darts' legs.
+    /// Exact start and end of the stretch (m), if they are ends of legs of darts. `None`: the drawn end
+    /// stays.
     ends: [Option<Vec2>; 2],
 }
 

@@ -84,7 +84,8 @@ pub struct Stage {
 pub struct StageLine {
     /// Name of the line.
     pub name: LineName,
-    /// Half of a folded panel that the line is on: each fold has one bit.
+    /// Half of a folded panel that the line is on: 0 is the half as drawn; each fold has one bit, which is
+    /// set for the half beyond that fold.
     pub half: u8,
     /// Kind of line.
     pub kind: LineKind,
@@ -101,7 +102,7 @@ pub struct StageLine {
 pub struct StageEdge {
     /// Name of the edge: of an edge in the document, or made by an operation.
     pub name: EdgeName,
-    /// Half of a folded panel that the edge is on: each fold has one bit.
+    /// Half of a folded panel that the edge is on, as in [`StageLine::half`].
     pub half: u8,
     /// The corner at the start of the edge. `None`: the edge continues another curve of the same named edge.
     pub start: Option<CornerName>,
@@ -253,8 +254,8 @@ impl Stage {
 }
 
 impl StageLine {
-    /// The line mirrored in `mirror`. A closed line keeps its direction round the cloth; `half` is added to
-    /// the halves of its edges.
+    /// The line, mirrored in the straight line `mirror`: a point (m) and a direction. If the line is closed
+    /// it keeps its direction round the cloth. The bits of `half` are added to the halves of its edges.
     pub(crate) fn mirrored(&self, mirror: (Vec2, Vec2), half: u8) -> Self {
         let mut edges: Vec<StageEdge> = self.edges.clone();
         if self.kind == LineKind::Internal {
@@ -273,8 +274,9 @@ impl StageLine {
     }
 }
 
-/// Edges mirrored in a line and walked the other way, so that a closed line keeps its direction. Corners stay
-/// at their positions: the corner at the end of an edge becomes the corner at its start.
+/// Edges mirrored in the straight line `mirror`, a point (m) and a direction, and walked the other way, so
+/// that a closed line keeps its direction. Each corner stays at its place: the corner at the end of an edge
+/// becomes the corner at its start.
 pub(crate) fn mirrored_edges(
     edges: &[StageEdge],
     mirror: (Vec2, Vec2),

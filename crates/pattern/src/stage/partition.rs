@@ -23,9 +23,11 @@ pub(crate) enum CutError {
 
 /// Largest distance between positions that count as equal (m).
 pub(super) const SAME: f64 = 1e-9;
-/// Distance from the ends of a cut within which it may touch the outline (m).
+/// Arc length from either end of a cut within which the cut may touch the outline or a hole (m). Also the
+/// least distance of its middle from the outline (m).
 const AT_END: f64 = 1e-6;
-/// Largest distance of chords from curves in the polygons that tell parts apart (m).
+/// Largest distance between a curve and its chords in the polygons that decide in which part a point lies
+/// (m).
 const FLATNESS: f64 = 1e-5;
 
 /// The lines, notches and darts of a stage that is cut apart, except the outline that is cut; each with the

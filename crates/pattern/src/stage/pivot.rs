@@ -32,17 +32,18 @@ pub(crate) enum PivotError {
     NoMouth,
     /// The share is not between 0 and 1.
     Share,
-    /// The new mouth lies within the dart's own mouth.
+    /// The new mouth lies on a leg of a dart, or at the mouth of the dart that is pivoted.
     OnDart,
     /// The legs of the dart differ in length, so that it does not close.
     LegsDiffer,
     /// Both darts would end in the same point, where the panel would come apart.
     OnePoint,
-    /// The distance of the dart ends from the pivot point is longer than a leg, or negative.
+    /// The distance from the pivot point at which the darts are to end is negative, or as long as a leg or
+    /// longer.
     TooFarBack,
 }
 
-/// Shares of an angle this near to 0 or 1 count as 0 or 1.
+/// Shares of an angle that differ from 0 or 1 by no more than this count as 0 or 1 (1).
 const ROUNDING: f64 = 1e-12;
 
 fn leg(by: OperationId, index: u16) -> crate::EdgeName {
@@ -144,6 +145,7 @@ struct Turning {
     /// Ends of the mouth of the new dart (m).
     new: [Vec2; 2],
     new_apex: Vec2,
+    /// Whether the whole of the old dart is moved, so that its mouth closes.
     closes: bool,
 }
 

@@ -14,7 +14,7 @@ pub(crate) enum MarkValue {
     Between([CornerName; 2], f64),
 }
 
-/// A position on a line: by a mark on this stage, or by a spot found on an earlier stage.
+/// A position on a line: given by a mark on this stage, or by a spot that was found on an earlier stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Placed {
     Mark(MarkValue),

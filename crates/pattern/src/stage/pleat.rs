@@ -37,7 +37,7 @@ struct Piece {
     allowance: f64,
 }
 
-/// Tolerance of the depth where the outline runs square to the pleat (m).
+/// Rounding error that is allowed in distances from the pleat line (m).
 const SAME_DEPTH: f64 = 1e-9;
 
 /// A stage with pleats: its parts are moved apart, with underlays between them and lines to fold along.
@@ -97,8 +97,9 @@ fn laid_flat(
     Ok(result)
 }
 
-/// The folds of a pleat at one end of its line, in the order of the outline. Each is `true` if the fold lies
-/// under the part of the panel before the pleat, `false` if under the part after it.
+/// The folds of a pleat at one end of its line, in the order of the outline. A fold is `true` if it lies
+/// under the part of the panel that comes before the pleat along the outline, `false` if under the part after
+/// it.
 fn folds(wish: &Pleating, (turn, end): (f64, usize)) -> Vec<bool> {
     // On a counter-clockwise outline, the part left of the pleat line comes before the pleat at the start of
     // the line.
@@ -117,8 +118,8 @@ fn corner(by: OperationId, gap: (u16, usize), k: usize) -> CornerName {
     }
 }
 
-/// The outline across the underlay of a pleat. When the pleat is folded, it lies on the outline beside the
-/// pleat.
+/// The edges of the outline across the underlay of a pleat. If the pleat is trued, they lie on the outline
+/// beside the pleat once it is folded; if not, they are straight.
 fn underlay(
     open: &CutOpen,
     gap: &Gap<'_>,
@@ -243,7 +244,8 @@ fn join(edges: &mut [StageEdge], [from, to]: [Vec2; 2]) {
     }
 }
 
-/// The outline beside a pleat, from the pleat line to the distance at which a fold ends.
+/// The outline on one side of a pleat, before it if `is_before`: from the pleat line to the distance `depth`
+/// from it (m), at which a fold ends.
 fn beside(
     open: &CutOpen,
     gap: &Gap<'_>,

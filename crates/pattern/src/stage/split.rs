@@ -18,7 +18,7 @@ pub(crate) enum SplitError {
 /// Largest distance from the outline at which an end of the curve counts as on it (m).
 const ON_OUTLINE: f64 = 1e-6;
 
-/// The stage with the stages of its two sides, left and right of the curve.
+/// The stage, completed by the stages of its two sides, left and right of the curve.
 pub(crate) fn split(
     stage: &Stage,
     (by, line): (OperationId, LineName),

@@ -11,7 +11,7 @@ use toile_geometry::{Curve, Path, Vec2};
 pub(crate) struct Spreading {
     pub by: OperationId,
     pub line: LineName,
-    /// A position on the line whose part of the panel stays fixed.
+    /// A position on the line. The part of the panel that has it stays fixed.
     pub held: Placed,
     pub cuts: Vec<SpreadAlong>,
     pub bridge: Bridge,
@@ -31,7 +31,7 @@ pub(crate) struct SpreadAlong {
 pub(crate) enum SpreadError {
     /// The cut with this number cannot be made.
     Cut(u16, CutError),
-    /// The line, or the place on it that stays fixed, is missing.
+    /// The line, or the place on it that stays fixed, is missing, or the stage is unfolded already.
     Line(CutError),
     /// An opening of the cut with this number is negative.
     Negative(u16),
@@ -49,7 +49,8 @@ pub(crate) enum SpreadError {
     Large(u16, u16),
     /// The depth of pleats is negative.
     NoDepth,
-    /// Within the depth of a fold, the outline beside the pleat with this number turns back.
+    /// The pleat with this number is too deep: within the depth of a fold, the outline beside it ends or runs
+    /// back towards the pleat.
     TooDeep(u16),
 }
 
@@ -109,10 +110,11 @@ pub(super) struct Gap<'g> {
     pub chord: &'g Chord,
     /// 0 at the start of the cut, 1 at its end.
     pub end: usize,
-    /// Index, in the divided outline, of the edge that starts at the opening.
+    /// Index, in the divided outline, of the edge after the opening.
     pub at: usize,
-    /// The edge before the opening and the edge after it, both moved with their parts.
+    /// The edge before the opening, moved with its part.
     pub before: &'g StageEdge,
+    /// The edge after the opening, moved with its part.
     pub after: &'g StageEdge,
 }
 
@@ -271,8 +273,8 @@ impl Chord {
         free.is_empty() || free.len() == 2 && free[0] != free[1]
     }
 
-    /// Motion of the part beyond the cut, relative to the part on the near side; `left` tells whether the
-    /// part beyond lies left of the cut.
+    /// Motion of the part of the panel on one side of the cut, left of it if `left`, when the cut opens and
+    /// the part on its other side stays.
     fn opened(&self, left: bool) -> Motion {
         let [start, end] = self.points;
         let way = end - start;
@@ -366,7 +368,8 @@ impl Parts {
 }
 
 /// Motion of a part: the motions at all cuts between it and the fixed part, beginning with the cut nearest to
-/// the fixed part.
+/// the fixed part. `own` and `still` are keys of the two parts: bit k of a key is set if the part lies
+/// between the ends of cut k in the order of edges.
 fn motion(chords: &[Chord], (still, own): (u64, u64), turn: f64) -> Motion {
     let is_far = |k: usize| own >> k & 1 == 1;
     let between: Vec<usize> = (0..chords.len())

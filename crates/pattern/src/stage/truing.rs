@@ -26,7 +26,7 @@ pub(crate) const CORNER: f64 = std::f64::consts::PI / 6.0;
 /// Largest difference between shares of an edge that count as equal (1).
 const SAME_SHARE: f64 = 1e-9;
 
-/// A row: consecutive darts in one edge, by indices of edges of the outline.
+/// A row of darts, as in [`Row`], by indices of the edges of the outline.
 struct DartRow {
     /// Indices of the edges of each stretch before, between and after the darts.
     stretches: Vec<Vec<usize>>,
@@ -103,7 +103,7 @@ impl Stage {
     }
 }
 
-/// Darts that are to be trued and take in cloth, but whose mouths do not lie within one edge.
+/// Darts that are to be trued and take in cloth, but are in no row: no edge runs on across their mouths.
 fn beside_no_row(stage: &Stage, outline: usize, rows: &[DartRow]) -> Vec<OperationId> {
     let edges = &stage.lines[outline].edges;
     let is_open = |by: OperationId| edges.iter().any(|e| e.half == 0 && e.name == leg(by, 0));
@@ -161,7 +161,7 @@ fn leg(by: OperationId, index: u16) -> crate::EdgeName {
 fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     let edges = &stage.lines[outline].edges;
     let count = edges.len();
-    // For a dart whose mouth lies within one edge: index of its first leg.
+    // Index of the first leg of a dart that is to be trued, if an edge runs on across its mouth.
     let within = |number: usize| -> Option<usize> {
         let dart = &stage.darts[number];
         let is_first = |edge: &StageEdge| edge.name == leg(dart.by, 0) && edge.half == 0;
@@ -217,7 +217,7 @@ fn rows(stage: &Stage, outline: usize) -> Vec<DartRow> {
     rows
 }
 
-/// Consecutive edges with the same name, the last of which is the one before the edge `end`.
+/// Indices of the consecutive edges with the same name that end where the edge `end` starts.
 fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
     let count = edges.len();
     let mut stretch = vec![(end + count - 1) % count];
@@ -232,7 +232,7 @@ fn stretch_before(edges: &[StageEdge], end: usize) -> Vec<usize> {
     stretch
 }
 
-/// Consecutive edges with the same name, the first of which is the edge `start`.
+/// Indices of the consecutive edges with the same name that begin with the edge `start`.
 fn stretch_after(edges: &[StageEdge], start: usize) -> Vec<usize> {
     let count = edges.len();
     let mut stretch = vec![start];

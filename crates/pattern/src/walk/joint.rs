@@ -86,8 +86,8 @@ impl Joint {
 
 impl Walk<'_> {
     /// The lines that cross the seam at its start and at its end; `ease` is the length by which one side may
-    /// be longer than the other (m). `None`: the edge of a side continues beyond the end of the seam, within
-    /// 30 degrees of straight, as where a slit begins or a third piece is sewn on.
+    /// be longer than the other (m). `None`: no line crosses there, as an edge continues beyond the end of
+    /// the seam, within 30 degrees of straight: a slit begins there, or a third piece is sewn on.
     pub fn joints(&self, ease: f64) -> [Option<Joint>; 2] {
         [0, 1].map(|end| self.joint(end, ease))
     }
@@ -130,8 +130,8 @@ impl Walk<'_> {
         };
         let piece = self.draft.pieces.get(run.span.piece)?;
         let (into_seam, at) = into_run(run, end)?;
-        // Whether the edge after the end of the seam is the next one in the direction of the ring, not
-        // against it.
+        // Whether the edge beyond the end of the seam is the next edge of the ring; if not, it is the one
+        // before.
         let forward = (run.span.to > run.span.from) == (end == 1);
         let share = if end == 0 { run.span.from } else { run.span.to };
         let wanted = if forward { 1.0 } else { 0.0 };
@@ -159,9 +159,13 @@ impl Walk<'_> {
 #[derive(Clone, Copy)]
 struct SeamCorner {
     piece: usize,
+    /// The edge that leaves the seam.
     edge: EdgeOrigin,
+    /// Position of the corner (m).
     at: Vec2,
+    /// Unit vector along that edge, away from the seam.
     leaving: Vec2,
+    /// Angle between the seam and that edge, through the cloth (rad).
     angle: f64,
 }
 

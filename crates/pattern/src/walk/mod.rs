@@ -24,8 +24,8 @@ pub struct Walk<'d> {
     sides: WalkSides,
 }
 
-/// The measured sides of a seam. As long as the draft is the same, a new walk can use them without measuring
-/// the seam again.
+/// The measured sides of a seam. As long as the draft is the same, another walk can use them, so that the
+/// seam need not be measured again.
 #[derive(Clone, Debug)]
 pub struct WalkSides(Arc<[WalkedSide; 2]>);
 
@@ -129,9 +129,9 @@ impl<'d> Walk<'d> {
         [self.sides.0[0].length, self.sides.0[1].length]
     }
 
-    /// The place at which both sides touch, by its arc length on the first side (m), which is limited to that
-    /// side. The place on the second side is at the same share of its length, so that ease is spread evenly,
-    /// as in sewing.
+    /// The place at which both sides touch, given by its arc length on the first side (m); beyond an end of
+    /// that side, the end is taken. The place on the second side is at the same share of its length, so that
+    /// ease is spread evenly, as in sewing.
     pub fn contact(&self, along: f64, fixed: FixedSide) -> Contact {
         let [first, second] = self.lengths();
         let along = along.clamp(0.0, first);
@@ -159,8 +159,9 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// Arc length, on the first side, of the place on the seam line of a piece that is nearest to the point
-    /// `to` of the piece's plane (m). `None`: the side `side` has no stretch on the piece.
+    /// The place on the side `side` of the seam, on one of its pieces, that is nearest to the point `to` of
+    /// the plane of that piece; given by the arc length, on the first side, of the place where the seam
+    /// touches there (m). `None`: the side has no stretch on the piece.
     pub fn nearest(&self, side: usize, piece: usize, to: Vec2) -> Option<f64> {
         let own = self.sides.0[side].runs.iter();
         let own = own.filter(|run| run.span.piece == piece);

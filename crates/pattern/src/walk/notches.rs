@@ -26,9 +26,9 @@ pub struct WalkedNotch {
     pub along: f64,
     /// Distance along the other side, from the place opposite this notch to its partner (m); positive if the
     /// partner lies further on. The partner is the nearest notch of the other side, if this notch is also the
-    /// nearest to it and both are within [`NOTCH_REACH`]. Without such a notch it is an end of the other
-    /// side, within [`NOTCHES_MEET`], else a closed dart or a joint between two pieces, within
-    /// [`NOTCH_REACH`]. `None`: the notch has no partner.
+    /// nearest to it and both are within [`NOTCH_REACH`]. If there is no such notch, it is an end of the
+    /// other side within [`NOTCHES_MEET`] or, if there is none, a closed dart or a joint between two pieces
+    /// within [`NOTCH_REACH`]. `None`: the notch has no partner.
     pub partner: Option<f64>,
     /// The piece of the partner, if the partner is a notch.
     pub partner_piece: Option<usize>,
