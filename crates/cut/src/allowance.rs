@@ -14,8 +14,10 @@ use crate::ring::{Chord, FLATNESS, Ring};
 use crate::{Finding, SegmentKind};
 use toile_geometry::Vec2;
 
-/// Cloth along one ring: the chain along the ring, the loops of corners and dart caps, and the findings.
+/// Cloth along one ring of the seam line, before it is united, with the findings about its corners.
 pub(crate) struct Cloth {
+    /// Closed chains round the cloth: separate patches of corners, dart caps and trimmed allowances, and the
+    /// chain along the whole ring.
     pub chains: Vec<Chain>,
     /// Whether each edge of the ring is a leg of a dart, which has no allowance of its own.
     pub is_leg: Vec<bool>,
@@ -34,9 +36,9 @@ struct Trim {
     corner: usize,
 }
 
-/// Largest bend (rad) that a wedge with a single tip covers. The tip is the point where the tangents of an
-/// arc of radius `width` at two ends an angle t apart meet; it lies width t^2 / 8 beyond the arc, here at
-/// most [`FLATNESS`].
+/// Largest bend (rad) that a wedge with a single tip covers. The wedge stands for an arc of radius `width`
+/// and angle t. The tangents at the ends of the arc meet in the tip, width t^2 / 8 beyond the arc: at most
+/// [`FLATNESS`] for this bend.
 fn wedge_step(width: f64) -> f64 {
     (8.0 * FLATNESS / width).sqrt().min(1.0)
 }
@@ -75,7 +77,7 @@ impl Corners {
         Self { cloth }
     }
 
-    /// Cuts that the corners at both ends of an edge make in the allowance of chord `k` of that edge.
+    /// Cuts that the corners at the two ends of its edge make in the allowance of chord `k` of the ring.
     fn trims(&self, ring: &Ring, k: usize) -> Vec<Trim> {
         let chord = &ring.chords[k];
         let edge = &ring.edges[chord.edge];
@@ -119,13 +121,13 @@ enum Joint {
     Flat,
     /// The chain runs round an outer bend, along a wedge.
     Wedge,
-    /// Slight bend: the allowances of both chords end at this point (m), half-way between the directions of
-    /// their normals.
+    /// Slight bend: the allowances of both chords end at this point (m), which lies in a direction between
+    /// the normals of the two chords.
     Meet(Vec2),
 }
 
-/// Inner bends whose cosine is greater than this are bends of a curve (1): its normal is taken to turn evenly
-/// there.
+/// Cosine of the sharpest inner bend that counts as slight (1). A slight bend is a bend of a curve, whose
+/// normal is taken to turn evenly there.
 const SLIGHT: f64 = 0.9;
 
 fn joint(ring: &Ring, k: usize, trimmed: &[Vec<Trim>], is_leg: &[bool]) -> Joint {
@@ -267,9 +269,9 @@ fn push_chord(chain: &mut Chain, ring: &Ring, k: usize, joints: [Joint; 2], trim
     }
     let crossing = crossed(chord, outer);
     if let Some(x) = crossing {
-        // The ends of this allowance cross at `x`: the cloth runs up to `x`, and beyond `x` the chain runs
-        // round backwards. The sides there are not tagged as this chord's own cut line, but as the end of an
-        // allowance.
+        // The end lines of this allowance cross at `x`: the cloth runs up to `x`, and beyond `x` the chain
+        // runs round backwards. The sides there are not tagged as this chord's own cut line, but as the end
+        // of an allowance.
         chain.side(outer[0], end_tag);
         chain.side(x, end_tag);
         chain.side(outer[1], edge_tag(None));
@@ -302,8 +304,9 @@ fn outer_ends(ring: &Ring, k: usize, joints: [Joint; 2]) -> [Vec2; 2] {
     [end(0, chord.from), end(1, chord.to)]
 }
 
-/// Crossing of the two ends of a chord's allowance. `None`: the ends do not cross. They cross where the curve
-/// is tighter than the allowance is wide.
+/// Point where the two end lines of a chord's allowance cross; each end line runs from an end of the chord to
+/// the outer end there. `None`: they do not cross. They cross where the curve is tighter than the allowance
+/// is wide.
 fn crossed(chord: &Chord, [start, end]: [Vec2; 2]) -> Option<Vec2> {
     if (end - start).dot(&chord.along()) >= 0.0 {
         return None;
@@ -355,7 +358,8 @@ fn push_trimmed(chain: &mut Chain, ring: &Ring, k: usize, (ends, trims): ([Vec2;
     }
 }
 
-/// Cloth of a chord beyond the crossing of its two ends, if a corner cuts some of it away.
+/// Cloth of a chord beyond the point where the end lines of its allowance cross, if a corner cuts some of
+/// this cloth away.
 fn trimmed_beyond(ring: &Ring, k: usize, ends: [Vec2; 2], trims: &[Trim]) -> Option<Chain> {
     let x = crossed(&ring.chords[k], ends)?;
     let corner = trims.first()?.corner;

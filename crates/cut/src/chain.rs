@@ -34,8 +34,8 @@ impl Chain {
     }
 }
 
-/// Tag of the sides that belong to the corner at the start of `edge`. Corners are numbered by the edge that
-/// starts there as given; in a ring that is walked backwards this is the edge before.
+/// Tag of the sides that belong to the corner at the start of `edge`. A corner has the number of the edge
+/// that starts there in the loop as given. In a ring that is walked backwards that is the edge before `edge`.
 pub(crate) fn corner_tag(ring: &Ring, edge: usize) -> Tag {
     Tag {
         edge: corner_edge(ring, edge),

@@ -25,8 +25,8 @@ pub enum Corner {
     SquareToNext,
     /// Each cut line runs to the other edge's extended seam line; the ends are joined by a straight line.
     Extended,
-    /// The edge before is a hem: its allowance ends on the mirror image, in the hem's seam line, of the other
-    /// cut line, so that both lie flush once the hem is turned up.
+    /// The edge before is a hem. The cut line of the other edge is mirrored in the hem's seam line, and the
+    /// hem's allowance ends on this image, so that both lie flush once the hem is turned up.
     MirroredInPrevious,
     /// As `MirroredInPrevious`, but the edge after is the hem.
     MirroredInNext,
@@ -37,7 +37,7 @@ pub enum Corner {
 pub const MITRE_LIMIT: f64 = MitreLimit::USUAL;
 
 /// Sine of the smallest turn that counts as a corner (1): at this turn the ends of two allowances of 40 mm
-/// are 0.4 um apart, and wedges between them would be lost on the union's grid.
+/// are 0.4 um apart, and wedges between them would be lost on the grid on which the cloth is united.
 pub(crate) const STRAIGHT: f64 = 1e-5;
 
 impl Corner {
@@ -94,9 +94,10 @@ impl HalfPlane {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Outcome {
     AsAsked,
-    /// The corner is cut off; uncut, it would reach this far (m).
+    /// The corner is cut off at its limit; uncut, it would reach this far from the seam line's corner (m).
     CutOff(f64),
-    /// The corner is mitred, as the shape asked for would reach this far (m).
+    /// The corner is mitred instead, because the shape asked for would reach too far: this far from the seam
+    /// line's corner (m).
     Mitred(f64),
 }
 
@@ -217,7 +218,8 @@ impl Turn {
     fn mitre(&self) -> CornerCloth {
         let Turn { before, after, .. } = self;
         let (na, mb) = (before.normal * before.width, after.normal * after.width);
-        // The end of the wider allowance stands beyond the other cut line, which runs on to that end.
+        // The end line of the wider allowance reaches beyond the other cut line. That cut line runs on until
+        // it meets the end line.
         if after.width * self.cos > before.width {
             let u = after.normal * (before.width / self.cos);
             return CornerCloth::patch(vec![Vec2::zeros(), na, u]);
@@ -253,7 +255,7 @@ impl Turn {
         }
     }
 
-    /// A mitre in place of the shape asked for, which would reach this far (m).
+    /// A mitre in place of the shape asked for, which would reach as far as `reach` (m).
     fn mitre_instead(&self, reach: f64) -> CornerCloth {
         let mitre = self.mitre();
         match mitre.outcome {

@@ -19,10 +19,11 @@ pub(crate) struct Cap {
     pub roof: Chain,
     /// Cloth between the neighbours' allowances and the extended legs.
     pub patches: Vec<Chain>,
+    /// Reason why the cap runs straight across the mouth. `None`: it is shaped by folding.
     pub fault: Option<CapFault>,
 }
 
-/// A directed line. Points have a side of it: left or right.
+/// A directed line, with points at its left and at its right.
 #[derive(Clone, Copy)]
 struct Axis {
     on: Vec2,
@@ -41,23 +42,24 @@ impl Axis {
         self.along.perp(&(p - self.on))
     }
 
-    /// Point of the axis that the line through `p` in the direction `way` meets.
+    /// Point where the line through `p` in the direction `way` meets the axis. `None`: they are parallel.
     fn meet(&self, p: Vec2, way: Vec2) -> Option<Vec2> {
         let t = -self.side(p) / self.along.perp(&way);
         t.is_finite().then(|| p + way * t)
     }
 }
 
-/// Direction of a ring whose outward normal is `normal`.
+/// Unit vector along a ring, in its walking order, at a point with the outward normal `normal`.
 fn along(normal: Vec2) -> Vec2 {
     Vec2::new(-normal.y, normal.x)
 }
 
-/// One side of a dart's mouth: the end of a leg, and the neighbour, the edge next to the leg, walked away
-/// from the dart.
+/// One side of a dart's mouth: the outer end of a leg, and the edge next to the leg (the neighbour), walked
+/// away from the dart.
 struct Flank {
     /// The leg, as an edge of the ring.
     leg: usize,
+    /// Outer end of the leg (m).
     mouth: Vec2,
     /// Unit vector outwards along the leg.
     out: Vec2,
@@ -115,8 +117,9 @@ impl Flank {
         }
     }
 
-    /// The neighbour's cut line from the extended leg on, and the triangle of cloth between the start of the
-    /// cut line and the extended leg that the cut line leaves out.
+    /// The neighbour's cut line from the point where it meets the extended leg, `axis`. If the cut line
+    /// starts on the neighbour's side of the leg, it is extended back to the leg. Then the triangle of cloth
+    /// between the leg and the start of the cut line is returned, too.
     fn beyond_leg(&self, axis: Axis) -> Result<(Vec<Vec2>, Option<[Vec2; 3]>), CapFault> {
         let [first, second, ..] = self.offset[..] else {
             return Err(CapFault::NoNeighbour);
@@ -149,7 +152,7 @@ impl Flank {
     }
 }
 
-/// The caps of all darts of an outline, with the number of each dart.
+/// The caps of all darts of an outline, in the order of `darts`.
 pub(crate) fn caps(ring: &Ring, darts: &[Dart]) -> Result<Vec<Cap>, CutError> {
     let cap = |(k, dart): (usize, &Dart)| {
         let legs = ring.legs(dart.legs).ok_or(CutError::Dart(k))?;
@@ -237,6 +240,8 @@ fn straight(flanks: &[Flank; 2], pressed: usize, width: f64) -> Chain {
     roof
 }
 
+/// Roof of a cap that is shaped by folding, and its patches of cloth, each with the side of the mouth that it
+/// lies at (0 before the dart, 1 after it).
 type Folded = (Chain, Vec<(usize, [Vec2; 3])>);
 
 fn folded(

@@ -34,7 +34,7 @@ pub enum StrokeKind {
     Fold,
     /// The grain line with its arrow.
     Grain,
-    /// The end of a dart.
+    /// A cross at the end of a dart, to be drilled or tacked.
     Drill,
 }
 
@@ -189,7 +189,8 @@ impl CutPiece {
             .map(|(_, notch)| notch)
     }
 
-    /// The grain line and its arrow head, at the place of a label: above the words, or alone in the middle.
+    /// The grain line and its arrow head, at the free spot of `label`: above the words if they lie there,
+    /// else in the middle of the spot.
     fn grain_arrow(&self, place: impl Fn(Vec2) -> Vec2, label: &Label) -> Vec<Vec<Vec2>> {
         let spot = &label.spot;
         let along = Vec2::new(self.grain.cos(), self.grain.sin());

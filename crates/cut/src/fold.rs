@@ -15,7 +15,7 @@ const SAME_WAY: f64 = 1e-6;
 const ON_LINE: f64 = 1e-6;
 
 impl HalfPlane {
-    /// Whether the border line runs in this direction or against it (rad).
+    /// Whether the border of the half-plane runs in this direction (rad) or against it.
     pub fn runs_along(&self, direction: f64) -> bool {
         let (sin, cos) = direction.sin_cos();
         self.inward.dot(&Vec2::new(cos, sin)).abs() < SAME_WAY
@@ -80,7 +80,8 @@ impl HalfPlane {
         self.cut(&polygon).rings().map(of).collect()
     }
 
-    /// The whole polyline if all of it lies inside or on the border, else the parts of it that lie inside.
+    /// The whole polyline if all of it lies in the half-plane or on its border, else the parts of it that lie
+    /// in the half-plane.
     fn kept(&self, points: &[Vec2]) -> Vec<Vec<Vec2>> {
         match points.iter().all(|&p| self.keeps(p)) {
             true => vec![points.to_vec()],
@@ -172,7 +173,7 @@ impl CutPiece {
         }
     }
 
-    /// Whether the piece is its own mirror image in a line, so that it may be cut on a fold.
+    /// Whether the piece is its own mirror image in the border of `half`, so that it can be cut on a fold.
     pub fn is_symmetric_in(&self, half: &HalfPlane) -> bool {
         let outer = self.outer();
         let mirror = |p: Vec2| p - half.inward * (2.0 * half.depth(p));
@@ -185,8 +186,8 @@ impl CutPiece {
         are_mirror_images(&self.straightened(), &other.straightened())
     }
 
-    /// Outline turned so that the grain runs along +x, and moved so that the lower corner of its box is the
-    /// origin.
+    /// Outline turned so that the grain runs along +x, and moved so that the lower left corner of its box is
+    /// the origin.
     fn straightened(&self) -> Polygon {
         let straight = self.outer().rotated(-self.grain);
         straight.translated(-straight.bounds().min)

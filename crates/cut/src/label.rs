@@ -14,7 +14,7 @@ pub(crate) struct Spot {
     pub room: f64,
 }
 
-/// Centres of the cells of a grid that lie inside a polygon (m).
+/// Centres of the cells of a grid over a polygon's box (m), as far as they lie inside the polygon.
 pub(crate) fn cells(polygon: &Polygon) -> Vec<Vec2> {
     let bounds = polygon.bounds();
     let all = (0..CELLS * CELLS).map(|k| {
@@ -24,7 +24,7 @@ pub(crate) fn cells(polygon: &Polygon) -> Vec<Vec2> {
     all.filter(|&point| polygon.contains(point)).collect()
 }
 
-/// The point among `cells` that is far from all lines and near the middle of the polygon's box.
+/// The best place among `cells`: far from all `lines`, and near the middle of the polygon's box.
 pub(crate) fn roomiest_of(polygon: &Polygon, cells: &[Vec2], lines: &[[Vec2; 2]]) -> Spot {
     let bounds = polygon.bounds();
     let centre = bounds.centre();

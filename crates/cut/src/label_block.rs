@@ -9,14 +9,16 @@ use toile_lettering::{shortened, width};
 const LATER_LINES: f64 = 0.7;
 /// Ratio of the distance between two baselines to the size of the lower line (1).
 const LINE_STEP: f64 = 1.3;
-/// Height of letters above and below the baseline, over the size of the letters (1).
+/// Height of letters above the baseline, over the size of the letters (1).
 const ASCENT: f64 = 0.8;
+/// Depth of letters below the baseline, over the size of the letters (1).
 const DESCENT: f64 = 0.25;
 /// Share of a free length that words may take (1): fonts of other programs are wider.
 const FILLED: f64 = 0.85;
-/// Gap between the spot (place of the grain line) and the words below it, and height of these words; both
-/// over the spot's distance to the outline (1).
+/// Gap between the middle of the grain line's spot and the words below it, over the spot's distance to the
+/// outline (1).
 const GAP: f64 = 0.05;
+/// Largest height of the words below the spot, over the spot's distance to the outline (1).
 const LINES: f64 = 0.85;
 /// Smallest letters that are easy to read (m). Words stand by the grain line only if their letters are at
 /// least this large.
@@ -30,7 +32,7 @@ const SHORTEST: f64 = 3.0;
 const UPRIGHT: f64 = 1.6;
 /// Smallest size of letters for which a place counts as free (m).
 const LEAST: f64 = 1e-6;
-/// Number of bisections in the search for the largest size.
+/// Number of bisections in the search for the largest size of letters.
 const STEPS: u32 = 12;
 
 /// A line of words, centred on a point of its baseline.
@@ -283,9 +285,10 @@ fn enters([from, to]: [Vec2; 2], bounds: &Bounds2) -> bool {
 /// The words of a piece, and the place of its grain line.
 pub(crate) struct Label {
     pub words: Vec<Words>,
-    /// Free place for the grain line: above the words if the words are below the spot, in the middle of the
-    /// spot if the words lie elsewhere.
+    /// Free place for the grain line.
     pub spot: Spot,
+    /// Whether the words lie at the spot, so that the grain line is drawn above them. Else it is drawn in the
+    /// middle of the spot.
     pub above: bool,
 }
 

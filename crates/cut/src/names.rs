@@ -2,7 +2,7 @@
 
 use toile_pattern::{EdgeOrigin, Name, Panel};
 
-/// Words for an edge: the name of a drawn edge of a panel in the lineage, else of the operation that made it.
+/// Words for an edge: its name if it was drawn on a panel of `lineage`, else the operation that made it.
 pub(crate) fn edge_words(lineage: &[&Panel], origin: EdgeOrigin) -> String {
     match origin.name {
         Name::Drawn(id) => match lineage.iter().find_map(|panel| panel.edge(id)) {

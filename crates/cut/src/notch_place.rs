@@ -28,8 +28,8 @@ pub(crate) struct Corner {
     after: Side,
 }
 
-/// Frame for a notch: its edge, the vector from the seam line to the cut line (m), and the unit vector into
-/// the piece.
+/// Frame for a notch: the edge that it is on, the vector from the seam line to the cut line (m), and the unit
+/// vector into the piece.
 struct Stand {
     edge: EdgeOrigin,
     outwards: Vec2,
@@ -172,8 +172,8 @@ impl Corner {
     }
 
     /// Vector from the corner to the cut line of the edge of `side` (m), along the extended seam line of the
-    /// other edge. At an inner corner, and at a blunt one where that point is far away, the vector leads to
-    /// the point where both cut lines meet.
+    /// other edge, which has the direction `drawn_on`. At an inner corner, and at a blunt corner where that
+    /// vector is long, it leads to the point where both cut lines meet.
     fn outwards(&self, side: Side, drawn_on: Vec2) -> Vec2 {
         let (sin, cos) = (
             -self.before.out.dot(&self.after.way),

@@ -95,8 +95,8 @@ impl CutLine {
 }
 
 /// The rings with their corners moved back from the grid to their original coordinates, and needless corners
-/// left out. If the rings then cross, one or both of these steps are undone; this takes two corners within a
-/// grid step of each other.
+/// left out. If the rings then cross, needless corners are kept, and if they still cross, corners stay on the
+/// grid. This happens only where two corners lie within a grid step of each other.
 fn traced(ring: &Ring, sides: &Sides, rings: &[Vec<Vec2>]) -> (Vec<Traced>, Vec<CutRing>) {
     let attempt = |exact: bool, merged: bool| {
         let traced: Vec<Traced> = rings.iter().map(|r| sides.trace(r, exact)).collect();

@@ -28,7 +28,7 @@ use toile_pattern::{
     Role,
 };
 
-/// Depth (m); notches that are cut less deep are reported as short.
+/// Least depth of a notch (m): notches that are cut less deep are reported as short.
 const SHORT_NOTCH: f64 = 0.0035;
 
 /// Origin of a segment of a closed line of a cut piece.
@@ -310,7 +310,7 @@ impl CutPiece {
         found.map(|text| &*text.text)
     }
 
-    /// Width of the allowance asked for beside an edge (m); edges of findings are numbered alike.
+    /// Width of the allowance asked for beside an edge (m); `index` is the number of the edge in findings.
     pub(crate) fn width(&self, index: EdgeIndex) -> Option<f64> {
         self.widths.get(index.ring)?.get(index.edge).copied()
     }
@@ -339,8 +339,8 @@ fn widths(seam: &NamedSeam) -> Vec<Vec<f64>> {
     loops.map(width).collect()
 }
 
-/// The last fold line along which a piece was unfolded: everything drawn before that fold lies on one side of
-/// it.
+/// The last fold line along which a piece was unfolded, with the side that was drawn: everything drawn before
+/// that fold lies on that side.
 fn last_fold(piece: &Piece, plane: &Plane) -> Option<HalfPlane> {
     let bit = 1_u8 << piece.folds.len().checked_sub(1)?.min(7);
     let [at, way] = *piece.folds.last()?;

@@ -71,7 +71,8 @@ pub enum CutError {
     /// A hole lies outside the outline or in another hole.
     #[error("hole {0} lies outside the outline or in another hole")]
     StrayHole(usize),
-    /// The legs of a dart do not follow each other, belong to two darts, or point outwards.
+    /// A dart is impossible: its legs do not follow each other, belong to another dart too, or point
+    /// outwards, or `pressed` is neither 0 nor 1.
     #[error("dart {0} has legs that do not follow each other, are another dart's, or point out")]
     Dart(usize),
 }

@@ -7,10 +7,11 @@ use crate::{CutRing, Origin, SegmentKind};
 use std::ops::ControlFlow;
 use toile_geometry::{EdgeTree, Vec2, point_segment_distance};
 
-/// Least height of a triangle of three corners, over its shorter side, at which the middle corner turns (1).
+/// Least distance of a corner from the line between its two neighbours at which the ring turns there, over
+/// the distance to the nearer neighbour (1).
 const TURN: f64 = 1e-4;
 
-/// All sides of all chains: in coordinates of the frame (`tree`) and as given.
+/// All sides of all chains of cloth: in coordinates of the frame (`tree`) and of the piece (`given`).
 pub(crate) struct Sides {
     frame: Frame,
     tree: EdgeTree,
@@ -22,12 +23,13 @@ pub(crate) struct Sides {
 pub(crate) struct Traced {
     /// Corners (m), moved back from the frame to coordinates of the piece.
     pub points: Vec<Vec2>,
+    /// Side of a chain that each segment lies on, as its number in [`Sides`].
     pub sides: Vec<usize>,
     /// Start and end of each segment on its side (shares of the side's length).
     pub spans: Vec<[f64; 2]>,
 }
 
-/// A span of a segment that lies on a side.
+/// A part of a ring's segment that runs along a side of a chain.
 struct Overlap {
     /// Start along the segment (m).
     from: f64,
@@ -224,8 +226,9 @@ impl Traced {
     }
 }
 
-/// The tag of two segments on one line if they may be joined, with a corner's segment becoming part of the
-/// edge or dart cap beside it; `None`: they may not be joined.
+/// The tag of the segment that two neighbouring segments on one line are joined to. A corner's segment
+/// becomes part of the edge or dart cap beside it. `None`: they stay apart, as their tags do not fit
+/// together.
 fn joined(ring: &Ring, [a, b]: [&Tag; 2]) -> Option<Tag> {
     use SegmentKind::{Corner, DartCap, Edge};
     let beside = [ring.before(a.edge), a.edge, ring.after(a.edge)].contains(&b.edge);

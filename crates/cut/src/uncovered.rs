@@ -11,8 +11,8 @@ use toile_geometry::{Polygon, Vec2, point_segment_distance};
 const SHORTEST: f64 = 1e-4;
 /// Shortest gap between spans that is not mere rounding (m).
 const ROUNDING: f64 = 1e-7;
-/// Depth from which a slit counts as shut, over the widest allowance beside it (1). This is the depth to
-/// which equal allowances close an inner corner of 60 degrees.
+/// Depth from which swallowed spans count as a slit that is shut, over the widest allowance beside it (1).
+/// This is the depth to which equal allowances close an inner corner of 60 degrees.
 const SLIT_DEPTH: f64 = 2.0;
 
 /// A span of one edge that has no cut line of its own.
@@ -22,6 +22,8 @@ struct Gap {
     /// Start along the edge in the ring's direction (m).
     from: f64,
     to: f64,
+    /// Whether other cloth lies where the span's cut line would be. If not, the allowance is narrower than
+    /// asked.
     swallowed: bool,
     /// Least width of the allowance on the span (m).
     least: f64,
@@ -167,8 +169,8 @@ impl<'a> Piece<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Ends and dividing points of a span of a chord (m): it is divided where the chord's offset line crosses
-    /// the cut line.
+    /// Ends and dividing points of a span of a chord (m). The span is divided where the chord's line, moved
+    /// outwards by the allowance, crosses the cut line.
     fn divided(&self, k: usize, [from, to]: [f64; 2]) -> Vec<f64> {
         let chord = &self.ring.chords[k];
         let width = self.ring.edges[chord.edge].width;
@@ -214,13 +216,15 @@ impl<'a> Piece<'a> {
         chords[k].from + chords[k].along() * (at - chords[k].at).min(chords[k].length)
     }
 
+    /// Distance of a point from the cut line (m).
     fn depth(&self, p: Vec2) -> f64 {
         let distances = self.segments.iter().map(|&s| point_segment_distance(p, s));
         distances.fold(f64::INFINITY, f64::min)
     }
 }
 
-/// Slits: runs of swallowed spans, which may go on round corners, that reach far from the cut line.
+/// Findings on slits that are shut: runs of swallowed spans that reach far from the cut line. A run can go on
+/// round corners.
 fn slits(piece: &Piece, gaps: &[Gap]) -> Vec<Finding> {
     let ring = piece.ring;
     let swallowed: Vec<&Gap> = gaps.iter().filter(|gap| gap.swallowed).collect();

@@ -28,9 +28,11 @@ use toile_drape::Input;
 use toile_measure::Measurements;
 use toile_pattern::Edit;
 
-/// Weights of the stages of making a garment in its progress bar.
+/// Weight of draping in the progress of making a garment (1). Only the ratios of weights count.
 const DRAPING: f64 = 80.0;
+/// Weight of laying markers in this progress (1).
 const LAYING: f64 = 7.0;
+/// Weight of writing the exported files in this progress (1).
 const WRITING: f64 = 7.0;
 
 /// A command to a session. The journal is a list of commands.
@@ -172,7 +174,7 @@ pub struct OtherGarment {
 enum NamedFiles<'a> {
     /// A file or folder that is written.
     Output(&'a mut PathBuf),
-    /// A file that is read, if any.
+    /// A file that is read. `None`: no file is read.
     Input(Option<&'a mut PathBuf>),
     /// Garments, whose patterns are read.
     Garments(&'a mut [OtherGarment]),
@@ -240,8 +242,8 @@ impl Command {
         }
     }
 
-    /// Stage of `timing.json` that the time of the command is added to, and the command's rough share of the
-    /// work of making a garment.
+    /// Stage of `timing.json` that the time of the command is added to (`None`: to no stage), and the
+    /// command's weight in the progress of making a garment (1).
     fn work(&self) -> (Option<&'static str>, f64) {
         match self {
             Self::OpenPattern { .. } => (Some("open"), 1.0),
@@ -278,7 +280,8 @@ impl Command {
         self.work().0
     }
 
-    /// Rough share of the work of making a garment, for progress.
+    /// Weight of the command in the progress of several commands (1): its rough work beside that of the
+    /// others.
     pub(crate) fn weight(&self) -> f64 {
         self.work().1
     }

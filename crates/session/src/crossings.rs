@@ -3,8 +3,8 @@
 use toile_drape::SceneRun;
 use toile_drape::collision::Tally;
 
-/// Pairs of cloth triangles that intersect and share no vertex, counted exactly before, during and after a
-/// run.
+/// Number of pairs of cloth triangles that intersect and share no vertex, counted exactly before, during and
+/// after a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct Crossings {
     /// Pairs that intersect before the first step.
@@ -18,9 +18,9 @@ pub(crate) struct Crossings {
     every: usize,
 }
 
-/// Number of counts in a run of known length, and steps between two counts in a run that solves for rest. An
-/// exact count may take as long as a step.
+/// Number of counts in a run of known length. They are few, as an exact count can take as long as a step.
 const COUNTS: f64 = 32.0;
+/// Number of steps between two counts in a run that solves for rest.
 const STEPS_TO_REST: usize = 8;
 
 impl Crossings {
@@ -80,14 +80,14 @@ impl Crossings {
     }
 }
 
-/// Edges of cloth that crossed a face of cloth, as a report counts them.
+/// Crossings of edges of cloth with faces of cloth, as the detections of a run's contact counted them.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub(crate) struct Tangles {
-    /// Crossing edges at the first detection.
+    /// Crossings at the first detection.
     found: usize,
-    /// Largest number of crossing edges at one detection.
+    /// Largest number of crossings at one detection.
     most: usize,
-    /// Crossing edges at the last detection.
+    /// Crossings at the last detection.
     left: usize,
     /// Vertices of outer layers that lie inside inner layers: at the first detection, the most at one
     /// detection, at the last detection.

@@ -35,7 +35,7 @@ const NEAR_GATHERS: f64 = 0.05;
 struct Point {
     /// Position in space (m).
     place: Vec3,
-    /// Positions in the flat pieces of both sides (m).
+    /// Positions in the flat pieces on the two sides of the seam (m).
     flat: [Vec2; 2],
     /// Length of cloth along the shorter side from the start of the seam (m).
     cloth: f64,

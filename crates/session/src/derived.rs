@@ -37,7 +37,7 @@ use toile_pattern::{
     ClothSettings, Diagnostic, Draft, Evaluation, Panel, Pattern, Size, SizeId, Wearer,
 };
 
-/// A mannequin with its source.
+/// A mannequin with its skin, and the source that it was made from.
 #[derive(Clone)]
 struct CachedMannequin {
     source: MannequinSource,
@@ -82,7 +82,7 @@ impl DraftedFor {
 #[derive(Clone, Default)]
 pub(crate) struct Derived {
     evaluation: Option<Arc<Evaluation>>,
-    /// Pattern of the last update of the evaluation.
+    /// Pattern that the evaluation was last updated to.
     evaluated: Option<Arc<Pattern>>,
     drafted_for: Option<DraftedFor>,
     draft: Option<Arc<Draft>>,
@@ -338,7 +338,7 @@ impl Derived {
         let skin = self.cached_mannequin(project)?.skin.clone();
         let source = MannequinSource::of(project);
         let mut job = setup::job(outfit, (source, skin), project.quality);
-        // Gathers have as many folds as the mesh they swing in can hold.
+        // A garment with gathers gets no coarse mesh: on it, gathers would form fewer folds.
         let gathers = outfit.draft.seams.iter().any(|seam| seam.gathered);
         let first = project.quality.first_edge_length();
         if let Some(edge_length) = first.filter(|_| !gathers) {

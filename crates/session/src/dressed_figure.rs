@@ -27,7 +27,7 @@ pub(crate) struct HungGarment {
     pub counted: Vec<bool>,
 }
 
-/// A garment of a scene file.
+/// A garment that a scene file lists, with the index of its object.
 struct Worn<'a> {
     index: usize,
     pattern: &'a str,

@@ -80,13 +80,13 @@ pub enum SessionError {
         /// The value given (m).
         value: f64,
     },
-    /// No mannequin can be made.
+    /// No mannequin can be made from the measurements or the description of a body.
     #[error("mannequin: {0}")]
     Body(#[from] toile_body::BodyError),
     /// The pieces cannot be meshed or placed.
     #[error("{0}")]
     Assembly(#[from] toile_assembly::AssemblyError),
-    /// The pieces cannot be laid.
+    /// The pieces cannot be laid on the fabric.
     #[error("{0}")]
     Marker(MarkerError),
     /// The garment cannot be sewn or draped.
@@ -111,7 +111,7 @@ pub enum SessionError {
         /// Step to take first.
         hint: &'static str,
     },
-    /// A line of a journal cannot be read.
+    /// A line of a journal cannot be read or written.
     #[error("journal, line {line}: {what}; each line is one command as JSON")]
     Journal {
         /// Line, from 1.

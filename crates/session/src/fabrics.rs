@@ -40,7 +40,8 @@ impl FabricChoice {
         }
     }
 
-    /// The fabric that was read from a fabric file, if the choice is one.
+    /// The fabric that was read from a fabric file. `None`: the choice is a name, or the file could not be
+    /// read.
     pub fn of_file(&self) -> Option<&Fabric> {
         match self {
             Self::Named(_) => None,

@@ -11,7 +11,7 @@ use toile_interchange::TransformFile;
 const RATE: f64 = 240.0;
 /// Time that a figure stands before its clip begins (s).
 const STANDS: f64 = 0.3;
-/// Gap kept between limbs and body (m): twice the distance of cloth from the skin, and cloth of 2 mm on both.
+/// Gap kept between limbs and body (m): room for a cloth of 2 mm on each of the two, 4 mm off the skin.
 const LIMB_GAP: f64 = 0.012;
 
 /// Options for playing a clip on a figure.
@@ -51,8 +51,8 @@ pub(crate) struct Course {
 }
 
 impl FigureTrack {
-    /// The course of a body from its sewing pose through a clip, for a duration from time 0 on (s). The
-    /// lead-in takes whole steps of the scene (s).
+    /// The course of a body from its sewing pose through a clip, for a duration from time 0 on (s). `step` is
+    /// the step of the scene (s): the lead-in takes a whole number of steps.
     ///
     /// # Errors
     /// A rate that is out of range.

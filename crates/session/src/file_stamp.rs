@@ -78,7 +78,8 @@ fn digest(bytes: &[u8]) -> String {
     format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step))
 }
 
-/// Digests of the fields of a JSON object; of a list, digests of its items by their names or numbers.
+/// Digests of the fields of a JSON object, by name. A field that is a list has a digest for each item
+/// instead, by the item's name or number. Empty if the bytes are no JSON object.
 fn parts(bytes: &[u8]) -> BTreeMap<String, String> {
     let Ok(Value::Object(fields)) = serde_json::from_slice(bytes) else {
         return BTreeMap::new();

@@ -19,7 +19,7 @@ impl Project {
     /// parts that were left out or are missing.
     ///
     /// # Errors
-    /// The file is missing, may not be read, or holds no pattern.
+    /// The file is missing or cannot be read, or holds no pattern.
     pub fn open(path: &Path) -> Result<(Self, Vec<String>), SessionError> {
         Self::open_from(path, PanelOrigin::Automatic)
     }

@@ -9,19 +9,24 @@ use toile_drape::{Measures, SceneRun, Workspace, measure};
 pub(crate) struct FrameCounts {
     /// Number of frames counted.
     frames: usize,
-    /// Frames in which a triangle of cloth crosses one of a solid, the most such pairs in one frame, and the
-    /// time of that frame (s). Pairs where the solid goes through itself are counted apart.
+    /// Number of frames in which a triangle of cloth crosses a triangle of a solid. Pairs where the solid
+    /// goes through itself (`most_buried_pairs`) do not count.
     crossing_solids: usize,
+    /// Largest number of such pairs in one frame.
     most_solid_pairs: usize,
+    /// Time of that frame (s). `None`: no frame has such a pair.
     most_solid_pairs_at: Option<f64>,
     /// Largest number of crossing pairs in one frame whose triangle of the solid lies inside another part of
-    /// the solid, and the largest area of such triangles over the area of the solids (1).
+    /// the solid.
     most_buried_pairs: usize,
+    /// Largest area of such triangles in one frame, over the area of the solids (1).
     buried_share: f64,
-    /// Frames in which cloth crosses cloth, and the most pairs in one frame.
+    /// Number of frames in which cloth crosses cloth.
     crossing_cloth: usize,
+    /// Largest number of pairs of cloth triangles that cross in one frame.
     most_cloth_pairs: usize,
-    /// Largest stretch of warp and of weft that a hundredth of the cloth exceeds in a frame.
+    /// Stretch of warp and of weft that a hundredth of the cloth exceeds in a frame (1): the largest of all
+    /// frames.
     stretch_p99: [f64; 2],
 }
 

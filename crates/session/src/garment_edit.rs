@@ -60,8 +60,8 @@ pub enum CannotFollow {
 }
 
 impl CannotFollow {
-    /// Whether a new garment of the present project can hang at once in place of the worn one. New panels are
-    /// drafted one after the other, and faults are to be mended first: then it is better to wait.
+    /// Whether a new garment of the present project can hang at once in place of the worn one. While panels
+    /// are added or faults are still to be mended it is better to wait.
     pub fn asks_for_another(&self) -> bool {
         match self {
             Self::Body | Self::Quality | Self::Fabric(_) | Self::Garments => true,

@@ -46,7 +46,8 @@ impl Session {
     /// Ends the present gesture without committing it, and returns its edits.
     pub fn cancel(&mut self) -> Option<Vec<Edit>> {
         let gesture = self.gesture.take()?;
-        // The evaluation is updated back by the difference; all else was kept from before the gesture.
+        // The present evaluation stays: its next update undoes the difference. All other values are those of
+        // before the gesture.
         self.derived = gesture.derived.with_evaluation_of(&self.derived);
         self.project = gesture.base;
         self.revision += 1;

@@ -27,7 +27,7 @@ pub fn is_input(path: &Path) -> bool {
 /// Reads a whole file; what comes through a pipe is read once and given again to whoever asks later.
 ///
 /// # Errors
-/// The file is missing, or may not be read.
+/// The file is missing or cannot be read.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error: std::io::Error| FileError::from_io("read", path, &error);
     if !is_pipe(path) {

@@ -160,8 +160,8 @@ pub(crate) fn read_inputs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Inpu
 pub(crate) struct InteractiveRun {
     job: GarmentJob,
     run: GarmentRun,
-    /// Number of a coarse mesh level, and the map from its mesh to the mesh of the garment; kept for the next
-    /// frame.
+    /// Number of a coarse mesh level, and the map that carries its shape over to the mesh of the garment;
+    /// kept for the next frame.
     carry: Option<(usize, Carry)>,
     /// Place (m) and force (N) of the pull on each held vertex.
     held: BTreeMap<u32, (Vec3, f64)>,

@@ -22,6 +22,7 @@ pub(crate) struct Entry {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Journal {
     entries: VecDeque<Entry>,
+    /// Number of commands that are no longer kept.
     dropped: usize,
 }
 

@@ -48,6 +48,7 @@ pub struct LiveFrame {
 #[derive(Default)]
 struct Orders {
     paused: bool,
+    /// Whether the garment is held where it hangs until an edit comes ([`LiveRun::stand_still`]).
     stands: bool,
     stop: bool,
     /// Inputs not yet taken, with the step they are for.
@@ -56,19 +57,28 @@ struct Orders {
     edit: Option<GarmentEdit>,
     /// Job that the thread works on.
     job: Option<Arc<GarmentJob>>,
-    /// The thread has ended.
+    /// Whether the thread has ended.
     ended: bool,
 }
 
+/// State that the thread and its [`LiveRun`] share.
 #[derive(Default)]
 struct Shared {
     orders: Mutex<Orders>,
+    /// Wakes the thread when `orders` have changed.
     woken: Condvar,
+    /// The newest frame. `None`: it was taken already.
     latest: Mutex<Option<LiveFrame>>,
+    /// Actions on the cloth so far.
     applied: Mutex<Vec<Input>>,
+    /// The garment at rest, or the reason why the run failed. `None`: the run goes on, was stopped, or came
+    /// to rest after an edit.
     outcome: Mutex<Option<Result<DrapeResult, String>>>,
+    /// Warnings about the garment when it last came to rest.
     warnings: Mutex<Vec<String>>,
+    /// Verdict on the garment at rest. `None`: it moves, or has not come to rest yet.
     verdict: Mutex<Option<Verdict>>,
+    /// Whether nothing moves any more.
     finished: AtomicBool,
 }
 
@@ -265,8 +275,8 @@ impl Shared {
         }
     }
 
-    /// Waits while the run is paused, stands still, or is at rest with nothing to do. Passes queued
-    /// actions on to the run.
+    /// Waits while the run is paused, stands still, or is at rest with nothing to do. Passes queued actions
+    /// on to the run. `told` is the report on the garment at rest, if it was made already: it is published.
     fn wait_for_task(&self, run: &mut InteractiveRun, told: Option<&RestReport>) -> NextTask {
         let mut orders = lock(&self.orders);
         loop {

@@ -13,7 +13,7 @@ use tracing_subscriber::{fmt, registry};
 
 /// Name of the environment variable.
 const VARIABLE: &str = "TOILE_LOG";
-/// The crates whose words are logged: those whose names begin so.
+/// Start of the names of the crates whose messages are logged.
 const CRATES: &str = "toile";
 
 /// How much is logged.
@@ -29,7 +29,7 @@ enum Detail {
 }
 
 impl Detail {
-    /// Reads the value of the variable; none of it, or an empty one, asks for nothing.
+    /// Reads the value of the variable. A variable that is not set, or is empty, asks for no log.
     fn read(value: Result<String, VarError>) -> Result<Self, String> {
         let word = match value {
             Ok(word) if word.is_empty() => return Ok(Self::Off),

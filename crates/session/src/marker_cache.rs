@@ -10,7 +10,7 @@ use toile_pattern::{Draft, Evaluation, Marker, MarkerId, Pattern, Size, SizeId, 
 #[derive(Clone)]
 struct SizeDraft {
     evaluation: Arc<Evaluation>,
-    /// Pattern and wearer of the last update.
+    /// Pattern and wearer that the evaluation was last updated to.
     of: (Arc<Pattern>, Wearer),
     draft: Arc<Draft>,
 }
@@ -31,7 +31,8 @@ pub(crate) struct MarkerCache {
 }
 
 impl MarkerCache {
-    /// Drafts the pattern to a size. The draft before is kept if the new one is equal.
+    /// Drafts the pattern to a size; `None`: as the project is drafted. The earlier draft is kept if the new
+    /// one is equal.
     fn draft(&mut self, project: &Project, size: Option<SizeId>) -> &SizeDraft {
         let pattern = &project.pattern;
         let own = pattern.sizes.iter().find(|own| Some(own.id) == size);

@@ -67,7 +67,7 @@ pub(crate) fn open_person(
     Ok((opened, stance))
 }
 
-/// Error of a stance that cannot be detected, with the remedy of the caller.
+/// Error for a mesh whose stance cannot be detected; `hint` is the remedy.
 pub(crate) fn stance_error(path: &Path, error: &BodyError, hint: &str) -> SessionError {
     SessionError::Format {
         path: path.to_owned(),

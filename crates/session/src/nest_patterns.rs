@@ -226,7 +226,8 @@ pub fn nest_instance(
     };
     let (items, strip) = (&instance.items, &instance.strip);
     let made = make_marker(items, strip, options.search(), &mut control);
-    // Messages give lengths in millimetres: scaled so that they show the numbers of the instance.
+    // Messages show lengths in millimetres. Lengths are scaled so that the numbers shown are those of the
+    // instance.
     let marker = made.map_err(|error| MarkerError::from(error.scaled(1e-3 / scale)))?;
     if cancel.load(Ordering::Relaxed) && !options.keep_best {
         return Err(SessionError::Cancelled);

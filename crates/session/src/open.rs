@@ -36,7 +36,7 @@ pub const SAMPLES: &[(&str, &str)] = &[
     ("sample:dress", "Dress"),
 ];
 
-/// Texts of the sample patterns, in the same order.
+/// Texts of the sample patterns, in the order of [`SAMPLES`].
 const SAMPLE_TEXTS: &[&str] = &[
     include_str!("../../../patterns/t-shirt.toile.json"),
     include_str!("../../../patterns/gathered-skirt.toile.json"),
@@ -137,7 +137,7 @@ pub fn open_mannequin(path: &Path) -> Result<Description, SessionError> {
 /// Reads a whole file that should be of a kind.
 ///
 /// # Errors
-/// It is missing, may not be read, or is plainly of another kind.
+/// The file is missing or cannot be read, or is plainly of another kind.
 pub(crate) fn read_bytes(path: &Path, expected: ExpectedKind) -> Result<Vec<u8>, SessionError> {
     let bytes = read_file(path)?;
     expected
@@ -152,7 +152,7 @@ pub(crate) fn read_bytes(path: &Path, expected: ExpectedKind) -> Result<Vec<u8>,
 /// Reads a whole text file that should be of a kind.
 ///
 /// # Errors
-/// It is missing, may not be read, is plainly of another kind, or is not text in UTF-8.
+/// The file is missing or cannot be read, is plainly of another kind, or is not text in UTF-8.
 pub fn read_input(path: &Path, expected: ExpectedKind) -> Result<String, SessionError> {
     let bytes = read_bytes(path, expected)?;
     let mut text = String::from_utf8(bytes).map_err(|error| {

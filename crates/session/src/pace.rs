@@ -32,7 +32,7 @@ struct Moment {
 const SPAN: f64 = 1.0;
 /// Share of the scene's duration over which the present speed is measured (1).
 const RECENT: f64 = 0.1;
-/// Largest number of moments kept in a span; closer ones tell no more.
+/// Largest number of moments kept in a span: a moment that follows the last one more closely is not kept.
 const MAX_MOMENTS: f64 = 1000.0;
 /// Time of a simulated second over that of the fastest one, above which the slow-down is reported (1).
 const SLOW: f64 = 2.0;
@@ -69,7 +69,7 @@ impl Pace {
         Ok(pace)
     }
 
-    /// Whether the run may be given up.
+    /// Whether there is a limit of processor time at which the run is given up.
     pub fn may_give_up(&self) -> bool {
         self.give_up.is_some()
     }
@@ -83,7 +83,7 @@ impl Pace {
     }
 
     /// Takes note of a step. Returns a finding if the run is to be given up: its last simulated second, or
-    /// the part of it so far, has taken more processor time than it may.
+    /// the part of it so far, has taken more processor time than the limit.
     pub fn follow(&mut self, run: &SceneRun) -> Option<Finding> {
         let now = self.moment(run);
         while self.past.len() > 1 && self.past[1].time <= now.time - SPAN {

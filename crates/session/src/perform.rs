@@ -21,7 +21,7 @@ use toile_interchange::{FABRIC_WIDTHS, Fitting, write_atomically, write_mannequi
 use toile_measure::Measurements;
 use toile_pattern::{Edit, EditError, Pattern, Severity, is_part_name};
 
-/// Farthest from the floor that the origin of panels may lie (m).
+/// Largest distance of the origin of panels from the floor, above or below it (m).
 const HIGHEST_ORIGIN: f64 = 10.0;
 
 type Outcome = Result<Vec<Event>, SessionError>;
@@ -121,7 +121,7 @@ impl Session {
         Ok(events)
     }
 
-    /// An empty pattern with a sheet to draw on and a fabric to cut from.
+    /// Begins a project with an empty pattern that has a sheet to draw on and a fabric to cut from.
     fn start(&mut self, name: &str) -> Outcome {
         if !is_part_name(name) {
             return Err(EditError::Name(name.to_owned()).into());
@@ -161,8 +161,8 @@ impl Session {
     }
 
     /// Reads a pattern that is in no file as a project in the present quality; also returns its fitting, and
-    /// notes. If `beside`, the state after it, has the same fitting and sizes, files of the fitting are not
-    /// read again.
+    /// notes. `beside` is the state that followed this one, with its fitting: if its fitting and sizes are
+    /// the same, files of the fitting are not read again.
     fn restored(
         &self,
         (text, beside): (&str, Option<&(Fitting, Project)>),
@@ -209,7 +209,7 @@ impl Session {
         report_progress(watcher, "writing", 0.0, &path.display().to_string())?;
         let text = document_text(&self.project, Some(path)).map_err(cannot("the pattern"))?;
         write_atomically(path, text.as_bytes())?;
-        // The file of a pattern is not part of the pattern: no step of the history.
+        // The file of a pattern is not part of the pattern: saving is no step of the history.
         self.project.source = Some(path.to_owned());
         self.saved = self.project.clone();
         let mut events = vec![Event::FilesWritten {

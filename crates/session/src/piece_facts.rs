@@ -108,7 +108,7 @@ pub struct SeamFacts {
     pub lengths_mm: [f64; 2],
     /// Whether the longer side is gathered or eased on purpose.
     pub gathered: bool,
-    /// Outlines that cross the seam at its ends.
+    /// Pairs of edges that go on into each other across the seam, at its ends.
     pub joints: Vec<JointFacts>,
 }
 

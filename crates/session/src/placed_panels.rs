@@ -63,7 +63,7 @@ impl PanelOrigin {
         }
     }
 
-    /// Raises the panels of a pattern that its file places in space, round this point, so that they stand on
+    /// Raises those panels of a pattern that its file places in space round this point, so that they stand on
     /// the floor. Returns a note if the origin was detected, or could not be.
     pub(crate) fn settle(self, pattern: &mut Pattern) -> Option<String> {
         if !has_placed_panels(pattern) {
@@ -190,7 +190,8 @@ pub(crate) fn sleeve_angle(pattern: &Pattern) -> Option<f64> {
         let part = draft.pieces.get(k).and_then(body_part_by_name);
         matches!(part, Some(BodyPart::LeftArm | BodyPart::RightArm))
     };
-    // Edges sewn to another part, and edges that are not sewn, as sums of points with their counts.
+    // Sums of points of edges, with the number of points: of edges sewn to another part of the garment, and
+    // of edges that are not sewn.
     let [mut armhole, mut free] = [(Vec3::zeros(), 0.0); 2];
     for (k, piece, _) in placed_pieces(&draft).filter(|row| is_sleeve(row.0)) {
         for (e, edge) in piece.outline.iter().enumerate() {

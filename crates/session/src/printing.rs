@@ -27,8 +27,9 @@ use toile_nesting::{
 };
 use toile_pattern::{DisplayUnit, Draft, Pattern, SizeSelection};
 
-/// Gap between pieces on paper, and margin to the edge of the drawing (m).
+/// Gap between pieces on paper (m).
 const GAP: f64 = 0.004;
+/// Margin between the pieces and the edge of the drawing (m).
 const EDGE: f64 = 0.003;
 /// Progress of a print when its pieces are arranged (1).
 const ARRANGED: f64 = 0.95;
@@ -38,9 +39,9 @@ const EVALUATIONS: u64 = 500_000;
 const MORE_ROWS: u32 = 3;
 /// Area of the drawing on one page over the area of its pieces (1): about what nesting reaches.
 const ROOMY: f64 = 1.3;
-/// Largest number of sheets of a print: nobody joins more, so that larger paper or a smaller scale is meant.
+/// Largest number of sheets of a print. Nobody joins more sheets: larger paper or a smaller scale is meant.
 const MAX_SHEETS: usize = 500;
-/// Scales that can be printed: from a doll's to twice the size.
+/// Smallest and largest scale that can be printed (1): a doll's, and twice the size.
 const SCALES: [f64; 2] = [0.01, 2.0];
 
 /// Options of a print.
@@ -442,8 +443,8 @@ fn arranged(job: PrintJob, watcher: &mut dyn Watcher) -> Result<PrintJob, Sessio
         }
     };
     if let Some(step) = job.paper.step() {
-        // A check by area, before the sheets are counted one by one: few sheets that lie within a piece have
-        // no line.
+        // A rough check by area, before the sheets are counted one by one. Sheets without a line are not
+        // printed, but few sheets lie so far within a piece that they have none.
         let area: f64 = outlines.iter().map(Polygon::area).sum();
         let sheets = (area / (step.x * step.y)) as usize;
         if sheets > 10 * MAX_SHEETS {

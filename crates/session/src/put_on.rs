@@ -89,7 +89,8 @@ impl PutOn {
         Ok((otherwise, ["from the waist", "from the chest"]))
     }
 
-    /// The body with the levels that garments are hung at.
+    /// The body that garments are placed on. If they hang from the chest, the waist has the height of the
+    /// chest.
     pub fn body<'a>(&self, mut body: PlacementBody<'a>) -> PlacementBody<'a> {
         if self.hangs_from_chest {
             body.levels.waist = body.levels.chest;
@@ -99,8 +100,8 @@ impl PutOn {
 }
 
 /// The body parts that sewn pieces go round, as far as the patterns or the names of the pieces tell, in the
-/// order of the pieces. Pieces without an entry go round the part that their neighbours go round, or else the
-/// trunk.
+/// order of the pieces. Pieces of which nothing is told go round the part that their neighbours go round, or
+/// else the trunk.
 fn told_body_parts(parts: &[DraftedPart]) -> Vec<BodyPart> {
     let pieces = parts.iter().flat_map(|part| &part.draft.pieces);
     let mut told = Vec::new();

@@ -65,8 +65,11 @@ pub struct RealtimeSurface {
 
 /// A skin whose vertices are blended from the motions of several joints.
 struct Skin {
+    /// Positions of the vertices at rest (m).
     rest: Vec<[f32; 3]>,
+    /// For each vertex, the joints that move it, with the share of each (1).
     shares: Vec<Vec<(u16, f32)>>,
+    /// Present motions of the joints.
     motions: Vec<toile_realtime::Frame>,
 }
 
@@ -85,9 +88,10 @@ pub struct RealtimeRun {
 /// Fade from one clip to the next (s): about a step.
 const FADE: f32 = 0.4;
 
-/// Distance of the innermost garment from the ellipsoids, and of each garment from the garment below it (m):
-/// most of the skin lies within the ellipsoids, but not all of it.
+/// Distance of the innermost garment from the ellipsoids (m): most of the skin lies within the ellipsoids,
+/// but not all of it.
 const FIRST_OFFSET: f32 = 0.006;
+/// Distance of each further garment from the garment below it (m).
 const NEXT_OFFSET: f32 = 0.008;
 
 /// Colour of the body (sRGB).

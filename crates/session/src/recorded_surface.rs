@@ -20,9 +20,10 @@ pub(crate) struct RecordedSurface {
     places: Places,
 }
 
+/// Places of the vertices of a surface.
 #[derive(Clone, Debug, PartialEq)]
 enum Places {
-    /// Positions of a surface at rest (m).
+    /// Positions of a surface that does not move (m).
     Still(Vec<[f32; 3]>),
     /// Indices of the vertices of a moving surface among the positions of a frame.
     Moving(Vec<u32>),
@@ -116,7 +117,7 @@ impl RecordedSurface {
         }
     }
 
-    /// Whether the surface is at rest.
+    /// Whether the surface does not move in its section.
     pub fn is_still(&self) -> bool {
         matches!(self.places, Places::Still(_))
     }

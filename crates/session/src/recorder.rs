@@ -27,6 +27,7 @@ pub(crate) struct Recorder {
     path: PathBuf,
     /// Length of the part of the file that holds frames of this run (bytes).
     length: u64,
+    /// Section of the file that frames are added to: its surfaces and its writer. `None`: none has begun.
     section: Option<(Vec<FrameSurface>, FrameWriter)>,
     /// The open file; `None` before the first frame.
     file: Option<File>,

@@ -222,8 +222,8 @@ impl Course<'_> {
             self.place.clear()?;
             self.keep_landmark()?;
         }
-        // With contact of cloth with cloth checkpoints can only be taken at whole seconds: the last one is
-        // kept.
+        // With contact of cloth with cloth, checkpoints can only be taken at whole seconds. The last one is
+        // kept, to be written if the run is given up.
         let mut kept = self.keep(None)?;
         while !self.begun.run.finished() {
             self.write_frame()?;
@@ -261,7 +261,8 @@ impl Course<'_> {
         Ok(None)
     }
 
-    /// The newest checkpoint of a run that may be given up; one is taken every simulated second.
+    /// The newest checkpoint of a run that has a limit at which it is given up: `kept`, or a new one after a
+    /// simulated second. `None`: there is no such limit, or no checkpoint could be taken yet.
     fn keep(&self, kept: Option<Kept>) -> Result<Option<Kept>, SessionError> {
         let run = &self.begun.run;
         let is_new = kept
@@ -273,7 +274,8 @@ impl Course<'_> {
         Ok(Some(self.begun.kept()?))
     }
 
-    /// Saves a checkpoint beside the frames, if the run is at a step at which one is to be kept.
+    /// Saves a checkpoint beside the frames if frames are recorded and the run is at a step whose checkpoint
+    /// is kept ([`SceneRun::is_landmark`]).
     fn keep_landmark(&self) -> Result<(), SessionError> {
         let run = &self.begun.run;
         if self.begun.recorder.is_none() || !run.is_landmark() || !run.has_checkpoints() {

@@ -53,7 +53,7 @@ pub(crate) struct Builder<'a> {
     pub counted: Vec<bool>,
     /// Longest lead-in of a figure, the motion into its clip before time 0 (s).
     pub(crate) lead_in: f64,
-    /// Time at which the last figure has come to rest (s).
+    /// Time at which the last figure has come to rest (s); `None` if no figure comes to rest.
     pub(crate) ends: Option<f64>,
 }
 
@@ -368,7 +368,8 @@ impl<'a> Builder<'a> {
                 error,
             })?;
         let [x, y, z] = self.file.gravity;
-        // A scene that says which way is down has settled the axes.
+        // A scene with another gravity than along -Y says itself which way is down: its axes are not
+        // detected.
         let is_settled = (x, z) != (0.0, 0.0) || y > 0.0;
         let hint = "say how the meshes of the scene stand, as in \"meshes\": {\"up\": \"z\", \"unit\": \"cm\"}";
         let file = self.file;
@@ -436,7 +437,7 @@ impl<'a> Builder<'a> {
             });
         }
         commands.extend([
-            // The scene names the one garment that it wants.
+            // The scene wants this garment alone, without those that its file says it is worn with.
             Command::SetLayers {
                 layer: 0,
                 others: Vec::new(),

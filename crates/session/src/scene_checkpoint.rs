@@ -164,7 +164,9 @@ impl SavedRun {
 
 /// Times at which a run saves checkpoints.
 pub(crate) struct CheckpointTimes {
+    /// Simulated time between two checkpoints (s). `None`: no checkpoints are saved.
     step: Option<f64>,
+    /// Simulated time of the next checkpoint (s).
     next: f64,
 }
 

@@ -18,7 +18,7 @@ pub(crate) enum Recorded {
     Moving(TriangleMesh, RecordedCourse),
 }
 
-/// Times (s) with the positions of all vertices (m).
+/// Motion of a recorded surface: times (s), each with the positions of all vertices (m).
 #[derive(Default)]
 pub(crate) struct RecordedCourse(Vec<(f64, Vec<Vec3>)>);
 

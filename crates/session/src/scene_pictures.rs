@@ -65,7 +65,7 @@ struct Shown {
     surfaces: Vec<ShownSurface>,
 }
 
-/// The pictures of a run in the making.
+/// The states of a run that its pictures show, collected while the run goes on.
 pub(crate) struct SceneAlbum {
     /// The states that are still to be painted.
     times: Vec<PictureTime>,

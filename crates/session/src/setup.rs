@@ -52,7 +52,7 @@ pub(crate) struct JobOrigin {
     /// Body that the garment was placed round.
     pub body: MannequinSource,
     pub quality: Quality,
-    /// The garments as drafted now.
+    /// The garments as drafted for this job.
     pub drafted: Vec<DraftedPart>,
     /// The garments as drafted when they were meshed.
     pub meshed: Arc<Vec<MeshedPart>>,
@@ -146,6 +146,8 @@ pub(crate) fn job(
 /// the body (`ContactSettings::offset`, 4 mm), so that a layer fits between the body and the next layer.
 pub(crate) const CLOTH_OFFSET: f64 = 2e-3;
 
+/// The mesh of an outfit as one level of a drape. Vertices have layers only if the garments lie in several
+/// layers.
 pub(crate) fn level(outfit: &Outfit) -> GarmentLevel {
     let garment = &outfit.garment;
     let first = outfit.parts.first().map(|part| part.layer);

@@ -264,7 +264,7 @@ fn under_the_rules_of(own: &FinishedMarker, other: &FinishedMarker) -> Option<Ma
     (is_better && judge(&own.items, &own.strip, &marker).is_sound()).then_some(marker)
 }
 
-/// Totals over markers.
+/// Totals over markers; [`Found::of`] divides them by the number of seeds.
 #[derive(Clone, Debug, Default)]
 struct Found {
     /// Length for one set of garments (m).

@@ -10,6 +10,7 @@ pub(crate) struct Timing {
     stages: BTreeMap<String, f64>,
     /// Processor time when the pattern was opened (s).
     cpu_start: Option<f64>,
+    /// Wall time of all stages (s).
     wall: f64,
 }
 

@@ -24,10 +24,11 @@ use toile_drape::{
 };
 use toile_geometry::Vec3;
 
-/// Stretch beyond which a garment is called too tight (1): a knit stretches as much without strain on the
-/// wearer.
+/// Stretch beyond which a garment is called too tight (1): a knit stretches up to this much without strain on
+/// the wearer.
 const TIGHT: f64 = 0.15;
-/// Depth in the body to which cloth that is too tight may be pressed (m).
+/// Depth of cloth in the body up to which cloth that is too tight counts as pressed in, and not as passed
+/// through (m).
 const PRESSED: f64 = 0.03;
 /// Depth of a vertex inside a solid beyond which the cloth is judged to have passed through (m): cloth that
 /// only presses on the solid sinks in less.
@@ -405,8 +406,8 @@ fn open_elastics(run: &SceneRun) -> Vec<Finding> {
         .collect()
 }
 
-/// Smallest share of its gap that an elastic must close in another run of the same length, at its present
-/// speed, to count as closing (1).
+/// Least share of its gap (1) that an open elastic would close in a further run of the same length, at its
+/// present speed, if it counts as closing.
 const CLOSING: f64 = 0.5;
 
 /// Words for an elastic: its index in the scene, with its ends.

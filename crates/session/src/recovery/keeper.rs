@@ -26,25 +26,33 @@ pub struct Recovery {
     files: Files,
 }
 
+/// State that the thread and its [`Recovery`] share, with a signal of changes.
 #[derive(Default)]
 struct Shared {
     state: Mutex<State>,
     changed: Condvar,
 }
 
+/// Orders to the thread, and its last failure.
 #[derive(Default)]
 struct State {
+    /// Order that the thread has not taken yet; a newer order replaces it.
     wish: Option<Wish>,
+    /// Whether the thread is to end.
     ends: bool,
+    /// Reason why the last order could not be carried out.
     failure: Option<String>,
 }
 
+/// An order to the thread.
 enum Wish {
+    /// Keep a state with the last steps of its history, the newest first.
     Keep(Box<Project>, Vec<HistoryStep>),
+    /// Remove the kept states.
     Clear,
 }
 
-/// The texts of the steps that were kept last, by the numbers of the steps.
+/// Texts of the document before each of the steps that were kept last, by the numbers of the steps.
 #[derive(Default)]
 struct KeptTexts {
     /// File of the document; the texts name other files from its folder.
@@ -52,6 +60,7 @@ struct KeptTexts {
     by_number: BTreeMap<u64, String>,
 }
 
+/// Folder of the files of one process, and the start of their names.
 #[derive(Clone)]
 struct Files {
     folder: PathBuf,
@@ -119,7 +128,7 @@ impl Drop for Recovery {
         self.lock = None;
         let kept = self.files.path(NEWEST).exists() || self.files.path(BEFORE).exists();
         if !kept {
-            // A lock file that stays is removed when the folder is next looked through.
+            // A lock file that cannot be removed does no harm: without a kept state no document is offered.
             let _ = fs::remove_file(self.files.path(LOCK));
         }
     }
@@ -179,7 +188,8 @@ impl Files {
         file_of(&self.folder, &self.id, ending)
     }
 
-    /// Keeps a state. `texts` holds the texts of the steps that were kept last.
+    /// Keeps a state. `texts` holds the texts from before the steps that were kept last, so that these texts
+    /// are not made anew.
     fn keep(
         &self,
         project: &Project,

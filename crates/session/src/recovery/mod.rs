@@ -27,9 +27,11 @@ pub use past_step::PastStep;
 
 use std::path::{Path, PathBuf};
 
-/// Endings of the names of the files of one process.
+/// Ending of the name of the file that a process holds locked.
 const LOCK: &str = "lock";
+/// Ending of the name of the file with the newest state.
 const NEWEST: &str = "newest";
+/// Ending of the name of the file with the state before the newest.
 const BEFORE: &str = "before";
 
 /// The user's folder for data that this program keeps from one run to the next; `None` if the system has no
