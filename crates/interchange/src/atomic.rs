@@ -1,7 +1,7 @@
 //! Files written whole or not at all.
 //!
-//! The bytes go to a temporary file in the same folder, reach the disk, and only then take the
-//! name: after a crash the name holds either the old file or the new one.
+//! The bytes are written to a temporary file in the same folder and reach the disk. Only then is that
+//! file renamed to the wanted name: after a crash the name holds either the old file or the new one.
 
 use crate::FileError;
 use std::fs;
@@ -13,7 +13,7 @@ use tempfile::NamedTempFile;
 /// the same name is replaced and keeps its permissions; a symbolic link is followed.
 ///
 /// # Errors
-/// The folder is missing or may not be written, the name is not that of an ordinary file, or the
+/// The folder is missing or cannot be written to, the name is not that of an ordinary file, or the
 /// disk is full. The old file is then intact and nothing else is left behind.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Staged::new(path, bytes)?.commit()
@@ -132,8 +132,8 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Makes the new name itself survive a loss of power, on systems that can do so. The file is already
-/// complete, so a failure of this step is harmless and not reported.
+/// Writes the folder of a file to the disk, so that a new name survives a loss of power, on systems that can
+/// do so. The file is already complete, so a failure of this step is harmless and not reported.
 fn sync_folder_of(file: &Path) {
     let folder = match file.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use toile_body::{Clip, Joint, Pose, Skeleton};
 use toile_geometry::Vec3;
 
-/// One channel of a joint.
+/// One channel of a joint: a number in every frame, along or about the axis x (0), y (1) or z (2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Channel {
     Position(usize),
@@ -20,13 +20,15 @@ pub(crate) struct Bone {
     pub(crate) parent: Option<usize>,
     /// Offset from the parent's origin at rest, in the file's unit.
     pub(crate) offset: Vec3,
-    /// Offset of the end of the bone from its origin, given for the last joint of a limb.
+    /// Offset of the bone's end from its origin, in the file's unit; `None` if the file gives no end.
     pub(crate) end: Option<Vec3>,
     pub(crate) channels: Vec<Channel>,
 }
 
+/// The words of a file that are not yet read, each with its line.
 struct Words<'a> {
     rest: std::vec::IntoIter<(usize, &'a str)>,
+    /// Line of the last word that was read, from 1.
     line: usize,
 }
 
@@ -89,16 +91,17 @@ fn shortened(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// Largest number of joints and largest number of frames that are accepted: a file with more is damaged.
+/// Largest accepted number of joints (first) and of frames (second): a file with more is damaged.
 const MOST: [usize; 2] = [1000, 200_000];
 
 /// Reads a BVH file and maps its motion to a skeleton. Joints are recognised by their usual names (CMU's,
 /// MakeHuman's, H-Anim's, left and right in words or letters). Every bone points in the direction that it has
-/// in the file, whatever the rest poses of the file and of the skeleton are. The path of the root is divided
-/// by the leg length. Joints that the file does not have keep their rest pose relative to their parent.
+/// in the file, whatever the rest poses of the file and of the skeleton are. Displacements of the root are
+/// divided by the leg length of the file's figure. Joints that the file does not have keep their rest pose
+/// relative to their parent.
 ///
 /// # Errors
-/// The fault, its place and a remedy; also a file without hips, knees and shoulders.
+/// The text is not BVH, or it names no hips, knees and shoulders: the fault, its place and a remedy.
 pub fn read_bvh(text: &str, skeleton: &Skeleton) -> Result<Clip, FormatError> {
     let mut words = Words::new(text);
     words.expect("HIERARCHY")?;
@@ -310,15 +313,16 @@ fn end_of(joint: Joint) -> Option<Joint> {
     bones.find(|bone| bone[0] == joint).map(|bone| bone[1])
 }
 
-/// Maps the file's bones to a skeleton's joints.
+/// Carries poses of the file's bones over to a skeleton's joints.
 pub(crate) struct Carrier {
-    /// For each joint, the index of the bone in the file.
+    /// For each joint, the index of its bone in the file; `None` if the file does not have the joint.
     bone: [Option<usize>; Joint::COUNT],
-    /// For each joint, the rotation from the direction of its bone at rest in the skeleton to that in the
-    /// file.
+    /// For each joint, the rotation that turns the direction of its bone at rest in the skeleton into the
+    /// direction of the same bone at rest in the file.
     align: [UnitQuaternion<f64>; Joint::COUNT],
-    /// Length of the legs of the file's figure, and the rest position of the root, in the file's unit.
+    /// Height of the left hip above the lowest point of the file's figure at rest, in the file's unit.
     leg: f64,
+    /// Position of the root at rest, with its height above the same lowest point, in the file's unit.
     root: Vec3,
 }
 
@@ -363,7 +367,7 @@ impl Carrier {
                     UnitQuaternion::rotation_between(&own, &theirs).unwrap_or_default();
             }
         }
-        // Feet stand flat at rest in the file and in the skeleton.
+        // Feet stand flat at rest both in the file and in the skeleton, so they are not turned.
         for joint in [
             Joint::LAnkle,
             Joint::RAnkle,

@@ -19,10 +19,10 @@ pub fn read_character(text: &str) -> Result<Character, FormatError> {
     file.into_character().map_err(refused)
 }
 
-/// Writes a character file, one line each for a joint, group, ellipsoid or key pose.
+/// Writes a character file, with one line for every joint, group, ellipsoid and key pose.
 ///
 /// # Errors
-/// A number that JSON cannot hold.
+/// The character has a value that JSON cannot represent.
 pub fn write_character(character: &Character) -> Result<String, FormatError> {
     let line = |value: Result<String, serde_json::Error>| {
         value.map_err(|error| FormatError::new("character", error.to_string(), "correct it"))

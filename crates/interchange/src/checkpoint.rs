@@ -25,8 +25,8 @@ struct Head {
     checksum: u32,
 }
 
-/// A type that can be saved as a checkpoint, with the name of its format. `toile run` writes only the type of
-/// `toile-session`, which holds a scene's run with the counts of its report.
+/// A type that can be saved as a checkpoint, with the name of its format. The type that `toile run` writes is
+/// defined in `toile-session`: it holds a scene's run together with the counts of its report.
 pub trait CheckpointFormat: Serialize + DeserializeOwned {
     /// The name of the format.
     const FORMAT: &'static str;

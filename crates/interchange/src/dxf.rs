@@ -14,7 +14,7 @@ pub(crate) struct DxfWriter {
     extent: Bounds2,
 }
 
-/// A number with four decimals (0.0001 mm), without trailing zeros.
+/// A number as text with at most four decimals (0.0001 mm for a length), without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -25,7 +25,8 @@ fn number(value: f64) -> String {
     }
 }
 
-/// A text on one line; characters beyond ASCII are written by their UTF-16 code.
+/// A text on one line: control characters become spaces; other characters beyond ASCII become `\U+` with their
+/// UTF-16 code.
 fn plain(text: &str) -> String {
     let mut safe = String::new();
     for c in text.chars() {

@@ -10,7 +10,7 @@ pub struct FileError {
     pub action: &'static str,
     /// The file or folder.
     pub path: PathBuf,
-    /// The answer of the system, or the fault of the path.
+    /// The error message of the operating system, or the fault of the path.
     pub cause: String,
     /// Remedy for the user.
     pub hint: &'static str,
@@ -20,7 +20,7 @@ impl FileError {
     /// An error of the operating system, with the remedy for its kind.
     pub fn from_io(action: &'static str, path: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
-        // Error kinds of the operating system; later versions may add more.
+        // The last arm stands for all other kinds of errors, also those that later versions of Rust may add.
         #[expect(
             clippy::wildcard_enum_match_arm,
             reason = "the system may tell kinds that nobody knows yet"
@@ -77,7 +77,7 @@ impl FormatError {
 /// Reads a whole text file.
 ///
 /// # Errors
-/// The file is missing, may not be read, or is not UTF-8.
+/// The file is missing, cannot be read, or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     std::fs::read_to_string(path).map_err(|error| FileError::from_io("read", path, &error))
 }

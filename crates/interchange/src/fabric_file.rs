@@ -12,13 +12,13 @@ pub struct FabricFile {
     /// Name of the fabric; `None` if the file gives no name.
     pub name: Option<String>,
     /// Material of the fabric. A value that the file leaves out is taken from the library fabric that the
-    /// file names, else from the default material.
+    /// file names, or from the default material if it names none.
     pub material: Material,
     /// Notes on unknown fields, and other notes for the user.
     pub notes: Vec<String>,
 }
 
-/// Head of a file with the values of a material; the other fields of the file are those of the material.
+/// The content of a file of the kind `fabric`: version, name, and the fields of a scene's material.
 #[derive(Deserialize)]
 struct Figures {
     toile: u32,

@@ -2,7 +2,7 @@
 //!
 //! JSON: `{ "kes": { "B": [0.12, 0.08], "2HB": [..], "G": 0.9, ... }, "cantilever": { ... },
 //! "cusick": { ... } }`. CSV: one property a line, `name, warp, weft`; a single value stands for
-//! both. Units are those of the tests: see docs/FORMATS.md.
+//! both warp and weft. Units are those of the tests: see docs/FORMATS.md.
 
 use crate::FormatError;
 use serde_json::{Map, Value};
@@ -14,7 +14,8 @@ use toile_fabric::{KesValues, Material};
 pub struct FabricTest {
     /// Material with the tested values; values that were not measured are those of [`Material::default`].
     pub material: Material,
-    /// Share of a fold that remains, if the bending hysteresis is given (1).
+    /// Share of a fold that remains in the unloaded fabric (1); `None` if the file gives no bending
+    /// hysteresis (2HB) or no bending stiffness (B).
     pub kept_fold: Option<f64>,
     /// Cusick's drape coefficient (%), to compare a simulated drape with.
     pub drape_coefficient: Option<f64>,
@@ -186,8 +187,8 @@ impl Reader {
         })
     }
 
-    /// Tensile values EM (extension) and LT (linearity). Either is computed from the other and the energy WT:
-    /// WT = LT EM 500 gf/cm / 2.
+    /// Sets the tensile values of a material from EM (extension) and LT (linearity). If one of them is missing,
+    /// it is computed from the other and the energy WT: WT = LT EM 500 gf/cm / 2.
     fn tensile(&self, material: &mut Material) -> Result<(), FormatError> {
         let (lt, wt) = (self.pair("LT")?, self.pair("WT")?);
         let em = match (self.pair("EM")?, lt, wt) {
@@ -212,7 +213,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Bending stiffness from B, else from the cantilever test. Returns the share of a fold that remains (1).
+    /// Sets the bending stiffness of a material from B, or from the cantilever test if B is missing. Returns
+    /// the share of a fold that remains (1), if B and 2HB are given.
     fn bending(&self, material: &mut Material) -> Result<Option<f64>, FormatError> {
         let density = material.density;
         let mut kept = None;

@@ -37,7 +37,7 @@ pub struct FrameSurface {
     /// Positions of a surface that does not move (m); it has no positions in the records.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub still: Option<Vec<[f32; 3]>>,
-    /// Rest shape of a cloth.
+    /// Rest shape of a cloth; `None` for other surfaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest: Option<RestShape>,
 }
@@ -50,7 +50,7 @@ pub struct RestShape {
     pub rest: Vec<[Vec2; 3]>,
     /// Index of the material of each triangle.
     pub material: Vec<u16>,
-    /// Panel of each triangle.
+    /// Number of the panel of each triangle.
     pub panel: Vec<u32>,
     /// The materials.
     pub materials: Vec<Material>,
@@ -222,8 +222,9 @@ impl FrameSection {
 /// Encodes the heads and records of a file of frames; the caller appends the bytes to the file.
 #[derive(Clone, Debug)]
 pub struct FrameWriter {
-    /// CRC-32 of the head.
+    /// CRC-32 of the section's head.
     head: u32,
+    /// Number of positions in a record.
     vertices: usize,
 }
 
@@ -231,7 +232,7 @@ impl FrameWriter {
     /// Starts a section; returns its writer and the bytes of its head.
     ///
     /// # Errors
-    /// Lists that do not fit together, or a value that JSON cannot represent.
+    /// The head has lists that do not fit together, or a value that JSON cannot represent.
     pub fn begin(head: &FrameHead) -> Result<(Self, Vec<u8>), FormatError> {
         head.check()?;
         let mut bytes = serde_json::to_vec(head).map_err(|error| json_error(&error))?;
@@ -265,7 +266,7 @@ impl FrameWriter {
     }
 }
 
-/// Checksum of a record, without its own four bytes.
+/// Checksum of a record, from the checksum of the section's head and the record's bytes before the checksum.
 fn checksum(head: u32, record: &[u8]) -> u32 {
     let mut hasher = crc32fast::Hasher::new_with_initial(head);
     hasher.update(record);
@@ -291,7 +292,7 @@ fn check_frame(frame: &Frame, vertices: usize) -> Result<(), FormatError> {
 /// Reads a file of frames; a file that was cut short is read up to its last complete record.
 ///
 /// # Errors
-/// A file that is no file of frames, has no complete frame or was changed: the place.
+/// The bytes are no file of frames, have no complete frame, or were changed: the place and a remedy.
 pub fn read_frames(bytes: &[u8]) -> Result<Frames, FormatError> {
     let mut sections: Vec<FrameSection> = Vec::new();
     let mut writer: Option<FrameWriter> = None;

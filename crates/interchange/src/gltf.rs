@@ -43,16 +43,16 @@ pub struct GlbPrimitive {
     pub colour: [f64; 3],
 }
 
-/// Pattern positions farther from the origin than this are moved towards the origin before rounding to `f32`
-/// (m). Within it the rounding is at most 6e-8 m, so that a distance between two positions is exact to 1.7e-7
-/// m.
+/// If a coordinate of a pattern position is larger than this in magnitude (m), its part is moved towards the
+/// origin along that axis before rounding to `f32`. Up to this magnitude the rounding is at most 6e-8 m, so
+/// that a distance between two positions is exact to 1.7e-7 m.
 const CENTRED_WITHIN: f64 = 2.0;
 
 /// Writes a scene as GLB.
 ///
 /// Texture coordinates are the pattern plane in metres: `u = x`, `v = -y`, since v points down in glTF;
-/// distances between them are rest lengths. A primitive that reaches beyond 2 m is first moved towards the
-/// origin by whole metres, which leaves a texture unchanged that repeats in a whole fraction of a metre.
+/// distances between them are rest lengths. A primitive that reaches farther than 2 m from the origin is first
+/// moved towards it by whole metres. A texture that repeats in a whole fraction of a metre looks the same then.
 /// Materials are rough, two-sided, and have the given base colour.
 ///
 /// # Errors

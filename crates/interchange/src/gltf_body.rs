@@ -6,16 +6,22 @@ use serde_json::{Value, json};
 use toile_body::{Clip, Joint, Mannequin};
 use toile_geometry::Vec3;
 
-/// Largest number of joints per vertex, the number that every viewer supports. The largest weights are kept.
+/// Largest number of joints that move one vertex; every viewer supports this number. Of more joints, those with
+/// the largest weights are kept.
 const JOINTS: usize = 4;
 
-/// Constants of the glTF standard: component types and buffer targets.
+/// Component type of unsigned bytes in the glTF standard.
 const BYTE: u32 = 5121;
+/// Component type of unsigned 32-bit integers.
 const INTEGER: u32 = 5125;
+/// Component type of `f32`.
 const FLOAT: u32 = 5126;
+/// Buffer target of vertex attributes.
 const VERTICES: u32 = 34962;
+/// Buffer target of the vertex indices of triangles.
 const CORNERS: u32 = 34963;
 
+/// The binary data of a glTF file being written, with the views and accessors that describe them.
 #[derive(Default)]
 pub(crate) struct Binary {
     pub bytes: Vec<u8>,
@@ -40,7 +46,7 @@ impl Binary {
         self.accessors.len() - 1
     }
 
-    /// Adds rows of floats with their minimum and maximum.
+    /// Adds rows of floats with their minimum and maximum; `vertices` tells whether they are vertex attributes.
     pub fn floats<const N: usize>(
         &mut self,
         rows: &[[f32; N]],
@@ -74,7 +80,7 @@ fn single(p: Vec3) -> [f32; 3] {
 /// quaternions: strongly bent joints look thinner in glTF.
 ///
 /// # Errors
-/// More than 4 GiB.
+/// The file would be larger than 4 GiB.
 pub fn write_body_glb(
     body: &Mannequin,
     clip: Option<(&str, &Clip)>,
@@ -176,7 +182,8 @@ fn attributes(body: &Mannequin, binary: &mut Binary) -> Value {
     })
 }
 
-/// The rotations of all joints and the path of the root over time; a loop ends with its first pose.
+/// The rotations of all joints and the path of the root over time; the first pose of a loop is repeated at its
+/// end.
 fn animation(body: &Mannequin, name: &str, motion: &Clip, binary: &mut Binary) -> Value {
     let skeleton = body.skeleton();
     let count = motion.poses.len() + usize::from(motion.is_loop);

@@ -20,15 +20,17 @@ pub struct MovingGlbMesh {
     pub colour: [f32; 3],
 }
 
-/// Component type and buffer target of triangle indices in the glTF standard.
+/// Component type of unsigned 32-bit integers in the glTF standard.
 const INTEGER: u32 = 5125;
+/// Buffer target of the vertex indices of triangles in the glTF standard.
 const CORNERS: u32 = 34963;
 
 /// Writes surfaces as GLB that all move at the given times (s). Metres, Y up. The animation starts at 0 and
-/// interpolates linearly between frames, as the recorded frames do. Some viewers show at most 64 targets.
+/// interpolates linearly between frames. Some viewers show at most 64 morph targets.
 ///
 /// # Errors
-/// Frames that do not fit each other or the times, a mesh without triangles, more than 4 GiB.
+/// A surface has neither one frame nor as many as there are times, frames with different numbers of vertices,
+/// no triangles, or triangles of vertices that do not exist; or the file would be larger than 4 GiB.
 pub fn write_frames_glb(meshes: &[MovingGlbMesh], times: &[f64]) -> Result<Vec<u8>, FormatError> {
     let mut binary = Binary::default();
     let start = times.first().copied().unwrap_or_default();
@@ -140,7 +142,7 @@ fn differences(rows: &[[f32; 3]], from: &[[f32; 3]]) -> Vec<[f32; 3]> {
         .collect()
 }
 
-/// Unit normals of the vertices; +Y for a vertex without one.
+/// Unit normals of the vertices; +Y for a vertex whose normal is a zero vector.
 fn normals(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Vec<[f32; 3]> {
     let mesh = TriangleMesh {
         positions: positions

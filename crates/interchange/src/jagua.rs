@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use toile_geometry::{Polygon, Vec2};
 use toile_nesting::{Allowed, Item, Marker, Mirror, Nap, Strip};
 
-/// Orientations written for items that may be turned freely: every fifteen degrees.
+/// Number of orientations read for an item that may be turned freely: one every fifteen degrees.
 const FREE_TURNS: u32 = 24;
 
 /// A strip packing instance.
@@ -25,13 +25,15 @@ pub struct JaguaInstance {
     pub strip: Strip,
     /// Notes on assumptions that were made.
     pub notes: Vec<String>,
+    /// The id of each item in the file.
     ids: Vec<Value>,
+    /// The file as read, to which a solution is added.
     document: Map<String, Value>,
 }
 
-/// Known fields of an instance and of an item. `solution`, and `dxf`, which names the source of an outline,
-/// are skipped.
+/// Known fields of an instance; `solution` is skipped.
 const TOP_FIELDS: [&str; 4] = ["name", "strip_height", "items", "solution"];
+/// Known fields of an item; `dxf` names the source of the outline and is skipped.
 const ITEM_FIELDS: [&str; 5] = ["id", "demand", "allowed_orientations", "shape", "dxf"];
 
 /// Adds a note for every unknown field.
@@ -67,7 +69,7 @@ pub fn read_jagua(text: &str) -> Result<JaguaInstance, FormatError> {
     let height = document.get("strip_height").and_then(Value::as_f64);
     let height = height.filter(|h| h.is_finite() && *h > 0.0);
     let height = height.ok_or_else(|| wrong("strip_height", "there is no height above 0"))?;
-    // The scaled height is between one and two metres, as the width of a roll of fabric.
+    // The scaled height is between one and two metres, like the width of a roll of fabric.
     let scale = (-height.log2().floor()).exp2();
     let listed = document.get("items").and_then(Value::as_array);
     let listed = listed.ok_or_else(|| wrong("items", "there is no list of items"))?;
@@ -152,7 +154,7 @@ fn read_item(
     })
 }
 
-/// Points of a ring, without the repetition of the first point at the end.
+/// Reads the points of an outline; a last point equal to the first is left out.
 fn ring(value: &Value, place: &str, scale: f64) -> Result<Vec<Vec2>, FormatError> {
     let list = value
         .as_array()
@@ -176,8 +178,8 @@ fn ring(value: &Value, place: &str, scale: f64) -> Result<Vec<Vec2>, FormatError
     Ok(points)
 }
 
-/// The instance with a marker as its solution, as jagua-rs and sparrow write it. The same marker gives the
-/// same bytes.
+/// The instance with a marker as its solution, as jagua-rs and sparrow write it; `seconds` is the run time,
+/// which is left out if it is `None`. The same marker gives the same bytes.
 ///
 /// # Errors
 /// A number is not finite.
@@ -262,7 +264,7 @@ pub fn write_jagua_instance(
     Ok((format!("{instance}\n"), left_out(items, strip)))
 }
 
-/// The properties of a job that an instance cannot express.
+/// The properties of the items and of the strip that an instance cannot express.
 fn left_out(items: &[Item], strip: &Strip) -> Vec<&'static str> {
     let any = |has: &dyn Fn(&Item) -> bool| items.iter().any(has);
     let all = [

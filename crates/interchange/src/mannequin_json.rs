@@ -12,8 +12,8 @@ use toile_measure::{Measurements, Origin, UnitKind, definition};
 const KIND: &str = "mannequin";
 const VERSION: u32 = 1;
 
-/// Centre, effective semi-axes (0.1 mm) and rotation vector (mrad) of a primitive, then its weight (0.001)
-/// unless it is 1.
+/// The nine or ten numbers of a primitive: centre (0.1 mm), effective semi-axes (0.1 mm), rotation vector
+/// (mrad), and its weight (0.001) unless that is 1.
 type Row = Vec<i32>;
 
 /// The native file. Measured lengths in centimetres, angles in degrees.
@@ -24,31 +24,35 @@ struct MannequinFile {
     kind: String,
     figure: Figure,
     measurements: BTreeMap<String, f64>,
-    /// Primitives of trunk, head, left arm and left leg before any measurement is applied; empty for the
-    /// primitives of the figure.
+    /// Primitives of the trunk before any measurement is applied. If this list and the next three are empty,
+    /// the figure's own primitives are used.
     #[serde(default)]
     trunk: Vec<Row>,
+    /// Primitives of the head, before any measurement is applied.
     #[serde(default)]
     head: Vec<Row>,
+    /// Primitives of the left arm, before any measurement is applied.
     #[serde(default)]
     arm: Vec<Row>,
+    /// Primitives of the left leg, before any measurement is applied.
     #[serde(default)]
     leg: Vec<Row>,
-    /// Heights and joint positions (m) of a body fitted to a mesh.
+    /// Heights and joint positions (m) of a body that was fitted to a mesh; `None` for any other body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     frame: Option<BodyFrame>,
-    /// Exceptional properties of single primitives.
+    /// Properties of single primitives that differ from the default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     particular: Vec<ParticularRow>,
-    /// Groups of primitives that are moved together.
+    /// Groups of primitives that are moved together, given by the numbers of the primitives.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     joined: Vec<Vec<usize>>,
 }
 
-/// Properties of one primitive; primitives are numbered from 0 over trunk, head, arm and leg.
+/// Properties of one primitive that differ from the default; see [`Primitive`] and [`Particular`].
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ParticularRow {
+    /// Number of the primitive: primitives are counted from 0 over trunk, head, arm and leg.
     primitive: usize,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     unblendable: bool,
@@ -63,7 +67,8 @@ struct ParticularRow {
 /// Body parts in the order of the file.
 const PARTS: [Part; 4] = [Part::Trunk, Part::Head, Part::LeftArm, Part::LeftLeg];
 
-/// Exceptional properties and joined groups of the primitives, numbered as in the file.
+/// Properties that differ from the default, and groups of joined primitives; both name primitives by their
+/// number in the file.
 fn particular(description: &Description) -> (Vec<ParticularRow>, Vec<Vec<usize>>) {
     let all = &description.primitives;
     // Index in the description of each primitive of the file.
@@ -97,7 +102,8 @@ fn particular(description: &Description) -> (Vec<ParticularRow>, Vec<Vec<usize>>
     (rows.collect(), joined)
 }
 
-/// Assigns the exceptional properties of the file to its primitives.
+/// Applies the properties of `rows` to the primitives that they name; returns those that belong to the rigging,
+/// with the groups `joined`.
 fn rigged(
     primitives: &mut [Primitive],
     rows: Vec<ParticularRow>,
@@ -128,12 +134,14 @@ fn rigged(
     })
 }
 
-/// Lengths are stored to 0.1 mm and rotations to 1 mrad, as in the templates; weights to 0.001.
+/// Precision of stored lengths (m), as in the templates.
 const LENGTH: f64 = 1e-4;
+/// Precision of stored rotations (rad), as in the templates.
 const TURN: f64 = 1e-3;
+/// Precision of stored weights (1).
 const WEIGHT: f64 = 1e-3;
 
-/// A frame with its lengths rounded as they are stored.
+/// A frame with all lengths rounded to the precision [`LENGTH`], as they are stored.
 fn rounded(frame: &BodyFrame) -> BodyFrame {
     let length = |x: f64| (x / LENGTH).round() / (1.0 / LENGTH).round();
     let place = |p: [f64; 3]| p.map(length);
@@ -163,10 +171,11 @@ fn rounded(frame: &BodyFrame) -> BodyFrame {
     }
 }
 
-/// Writes everything that a mannequin is made from: the same file gives the same body.
+/// Writes everything that a mannequin is made from: the same file gives the same body. Right limbs are mirror
+/// images of the left ones, so primitives of right limbs are not written.
 ///
 /// # Errors
-/// A primitive of a right limb: right limbs are mirror images of the left ones.
+/// The description has a value that JSON cannot represent.
 pub fn write_mannequin(description: &Description) -> Result<String, FormatError> {
     let rows = |part: Part| -> Vec<Row> {
         let own = description.primitives.iter().filter(|p| p.part == part);
@@ -222,7 +231,7 @@ fn is_angle(name: &str) -> bool {
 /// Reads a file of [`write_mannequin`].
 ///
 /// # Errors
-/// The fault, its place and a remedy.
+/// The text is not a mannequin file, or has a value that makes no sense: the fault, its place and a remedy.
 pub fn read_mannequin(text: &str) -> Result<Description, FormatError> {
     let hint = "write {\"toile\": 1, \"kind\": \"mannequin\", \"figure\": \"woman\", \"measurements\": {\"height\": 170}}";
     let file: MannequinFile = serde_json::from_str(text).map_err(|error| {

@@ -64,7 +64,7 @@ pub struct MarkerFabric {
     pub max_length: Option<f64>,
     /// Whether the fabric has a nap, so that all pieces point in one direction.
     pub one_way: bool,
-    /// Whether the pieces of each garment point in one common direction, either of the two.
+    /// Whether all pieces of one garment point in the same of the two directions along the warp.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub one_way_per_garment: bool,
     /// Folds along the warp.
@@ -179,8 +179,8 @@ pub struct MarkerMatch {
     /// Offset of the point from the lines of the print, along the warp and across it (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<[f64; 2]>,
-    /// Number of the set of points that must all lie at one place of the repeat, instead of at a given
-    /// offset.
+    /// Number of a set of points, if `after` is not given: all points of the set lie at one place of the
+    /// repeat.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub set: Option<u32>,
 }

@@ -2,13 +2,13 @@
 
 use toile_lettering::{is_plain, width};
 
-/// Safety factor for the length of a line in a sans-serif font other than Helvetica: in DejaVu Sans and
-/// Verdana it is about 1.17 times as long.
+/// Safety factor for the length of a line, since a sans-serif font other than Helvetica may draw it: in DejaVu
+/// Sans and Verdana a line is about 1.17 times as long as in Helvetica.
 const WIDER: f64 = 1.25;
 
-/// Breaks a text of a letter size into lines that are no longer than `length`, both in the same unit,
-/// whichever sans-serif font draws it. Lines break between words, and within a word that is longer than a
-/// line.
+/// Breaks a text into lines that are no longer than `length`, whichever sans-serif font draws them; `size` is
+/// the letter size, in the unit of `length`. Lines break between words, and within a word that is longer than
+/// a line.
 pub(crate) fn lines_within(text: &str, size: f64, length: f64) -> Vec<String> {
     // Letters of other scripts may be as wide as they are high.
     let wide = |c: char| {

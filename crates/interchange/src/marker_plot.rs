@@ -131,7 +131,7 @@ pub(crate) struct PlotLook {
     pub words: bool,
 }
 
-/// Fill of regions where pieces overlap, which would be cut twice.
+/// Fill colour of the regions where pieces overlap: these would be cut twice.
 const CUT_TWICE: [f32; 3] = [0.9, 0.0, 0.0];
 
 /// Draws a marker on a page.

@@ -9,8 +9,9 @@ use toile_geometry::Vec2;
 const PAGE: [f64; 2] = [0.210, 0.297];
 /// White border on every side (m).
 const BORDER: f64 = 0.015;
-/// Letter size and line spacing (m).
+/// Letter size of the text (m).
 const LETTERS: f64 = 0.0035;
+/// Distance from one line to the next (m).
 const LINE: f64 = 0.0055;
 const BLACK: Ink = [0.07, 0.07, 0.07];
 const RED: Ink = [0.7, 0.0, 0.13];
@@ -36,10 +37,13 @@ pub fn write_marker_report(title: &str, markers: &[MarkerDrawing]) -> Result<Vec
     Ok(report.finish(title))
 }
 
+/// A report being written.
 struct Report {
+    /// The pages that are full.
     sheets: PdfSheets,
+    /// The page that is being filled.
     page: PdfPage,
-    /// Baseline of the next line (m).
+    /// Height of the next line's baseline above the lower edge of the page (m).
     at: f64,
 }
 
@@ -222,7 +226,8 @@ impl Report {
         self.rule();
     }
 
-    /// Table of the length needed of each fabric.
+    /// Writes a table with the length of fabric, efficiency and cost of each marker, and the total length and
+    /// cost.
     fn totals(&mut self, title: &str, markers: &[MarkerDrawing]) {
         self.heading(&format!("{title}: fabric needed"));
         let right = |x: f64| (PAGE[0] - BORDER - x, Align::Right);

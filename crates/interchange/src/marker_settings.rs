@@ -88,8 +88,8 @@ impl PieceSettings {
     }
 }
 
-/// Fabric settings that this kind of file expresses in another way: the length as a roll, the tilt as a rule
-/// for all pieces, the currency once for the whole file.
+/// Fields of fabric settings that are refused in this kind of file, because it expresses them in another way:
+/// the length as a roll, the tilt as a rule for all pieces, the currency once for the whole file.
 const SAID_OTHERWISE: [&str; 3] = ["length", "tilt", "currency"];
 
 /// Reads a file of marker settings.
@@ -98,7 +98,7 @@ const SAID_OTHERWISE: [&str; 3] = ["length", "tilt", "currency"];
 /// The text is not JSON, not marker settings, of a newer version, has an unknown field, or a number that
 /// makes no sense.
 pub fn read_marker_settings(text: &str) -> Result<MarkerSettings, FormatError> {
-    // Invalid JSON is reported in the same words as by the other readers.
+    // Parsed by `serde_json` first, so that invalid JSON is reported in the words of the other readers.
     serde_json::from_str::<serde::de::IgnoredAny>(text).map_err(|error| {
         let place = format!("line {}, column {}", error.line(), error.column());
         let what = error.to_string();

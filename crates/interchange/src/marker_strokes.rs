@@ -13,13 +13,18 @@ use toile_nesting::Fold;
 )]
 #[strum(serialize_all = "UPPERCASE")]
 pub(crate) enum Layer {
+    /// Outline of the fabric.
     Fabric,
+    /// Borders of the usable part of the fabric: along the selvedges and the end margins.
     Margin,
+    /// Folds of the fabric, and edges of pieces that lie on a fold.
     Fold,
+    /// Lines of the fabric's print.
     Print,
     Flaw,
     Cut,
     Sew,
+    /// Lines and marks inside a piece.
     Line,
     Notch,
     Grain,

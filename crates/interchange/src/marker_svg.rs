@@ -17,8 +17,9 @@ use toile_nesting::Fold;
 const BORDER: f64 = 20.0;
 /// Smallest width of the heading with the scale bar (mm).
 const SHORTEST: f64 = 400.0;
-/// Letter sizes of the title and of the lines below it (mm).
+/// Letter size of the title, and distance from one line of the title to the next (mm).
 const TITLE: f64 = 22.0;
+/// Letter size of the lines below the title (mm).
 const LETTERS: f64 = 14.0;
 /// Line spacing below the title (mm).
 const LINE: f64 = 18.0;
@@ -148,7 +149,7 @@ impl Heading {
     }
 }
 
-/// Spacing from one line of a heading to the next (mm).
+/// Distance from one line of a heading to the next (mm); `pair` holds these two lines.
 fn step(pair: &[(f64, &'static str, String)]) -> f64 {
     match pair {
         [(size, ..), _] if *size == TITLE => TITLE,
@@ -228,7 +229,8 @@ fn overlaps(text: &mut String, drawing: &MarkerDrawing) {
     }
 }
 
-/// Transform from fabric (m) of the given width (m) to the page (mm), on which y points down.
+/// Transform from points of the fabric (m) to the page (mm), on which y points down; holds the fabric's width
+/// (m).
 struct Page(f64);
 
 impl Page {

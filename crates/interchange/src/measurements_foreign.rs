@@ -17,7 +17,7 @@ use toile_measure::{FREESEWING, Measurements, Origin, UnitKind, definition, tran
 /// top or under `measurements` or `measies`.
 ///
 /// # Errors
-/// The fault, its place and a remedy.
+/// The text is not JSON, a name is unknown, a value is not a number or is refused, or there is no measurement.
 pub fn read_freesewing(text: &str) -> Result<Measurements, FormatError> {
     let value: serde_json::Value = serde_json::from_str(text.trim_start_matches('\u{feff}'))
         .map_err(|error| {
@@ -70,7 +70,8 @@ pub(crate) fn looks_like_freesewing(text: &str) -> bool {
         .any(|name| text.contains(name))
 }
 
-/// Enters a value into a table; if two names of the file mean one measurement, the first value counts.
+/// Enters a number into a table: angles are in degrees, `scale` is the unit of lengths (m). If two names of the
+/// file mean one measurement, the first value counts.
 pub(crate) fn put(
     table: &mut Measurements,
     name: &str,

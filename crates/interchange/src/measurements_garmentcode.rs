@@ -3,7 +3,8 @@
 use crate::FormatError;
 use toile_measure::{Measurements, Origin, UnitKind, definition};
 
-/// Names with values in degrees; every other value is in centimetres.
+/// Names with values in degrees, besides those that [`definition`] knows as angles; other values are in
+/// centimetres.
 const DEGREES: [&str; 3] = ["arm_pose_angle", "hip_inclination", "shoulder_incl"];
 
 /// Reads a GarmentCode body file: YAML with a top key `body` that holds one flat map of names to numbers,

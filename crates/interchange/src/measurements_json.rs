@@ -10,7 +10,7 @@ use toile_measure::{Measurements, Origin, UnitKind, definition};
 const KIND: &str = "measurements";
 const VERSION: u32 = 1;
 
-/// The native file: lengths in centimetres, angles in degrees.
+/// The native file: lengths in its unit (mm, cm, m or in), angles in degrees.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MeasurementsFile {
@@ -24,7 +24,7 @@ struct MeasurementsFile {
 /// Seamly and Valentina (XML) or FreeSewing (JSON). A table for several sizes is read in its base size.
 ///
 /// # Errors
-/// The fault, its place and a remedy.
+/// The text is no table of any of these formats, or has an invalid value: the fault, its place and a remedy.
 pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
     Ok(read_sized_measurements(text, SizeChoice::default())?.0)
 }
@@ -32,8 +32,8 @@ pub fn read_measurements(text: &str) -> Result<Measurements, FormatError> {
 /// Reads one size of a multi-size table; also returns notes on the size chosen and on values left out.
 ///
 /// # Errors
-/// The fault, its place and a remedy; a size that the table does not have, or any size for a table of one
-/// body.
+/// The faults that [`read_measurements`] refuses; a size that the table does not have, or any size for a table
+/// of one body.
 pub fn read_sized_measurements(
     text: &str,
     choice: SizeChoice,
@@ -96,7 +96,7 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
 /// Writes a table in the native format: centimetres and degrees.
 ///
 /// # Errors
-/// None for a table of finite numbers, which every table is.
+/// A value that JSON cannot represent; no table has one, since all its numbers are finite.
 pub fn write_measurements(table: &Measurements) -> Result<String, FormatError> {
     let number = |name: &str, value: f64| {
         let angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);

@@ -7,12 +7,13 @@ use crate::xml::Xml;
 use roxmltree::Node;
 use toile_measure::{Measurements, SEAMLY, translated};
 
-/// Difference between consecutive sizes and between consecutive heights (m): the increments of a measurement
-/// refer to these.
+/// Difference in size for which the table gives a measurement's `size_increase` (m).
 const SIZE_STEP: f64 = 0.02;
+/// Difference in body height for which the table gives a measurement's `height_increase` (m).
 const HEIGHT_STEP: f64 = 0.06;
-/// Range of sizes and of heights that the programs offer (m).
+/// Smallest and largest size that Seamly and Valentina offer (m).
 const SIZES: [f64; 2] = [0.22, 0.72];
+/// Smallest and largest body height that Seamly and Valentina offer (m).
 const HEIGHTS: [f64; 2] = [0.50, 2.00];
 
 /// The size chosen from a multi-size table; a missing value means the table's base.
@@ -25,7 +26,7 @@ pub struct SizeChoice {
 }
 
 impl SizeChoice {
-    /// Whether a size or a height other than the base is asked for.
+    /// Whether a size or a height is asked for.
     pub(crate) fn is_given(&self) -> bool {
         self.size.is_some() || self.height.is_some()
     }
@@ -207,7 +208,7 @@ fn words([size, height]: [f64; 2]) -> String {
     format!("size {} of height {} cm", in_cm(size), in_cm(height))
 }
 
-/// The measurements of a file at a number of size and height steps from the base.
+/// The measurements of a file; `steps` are the numbers of size and height steps from the base.
 fn rows_of(xml: &Xml<'_>, steps: [f64; 2]) -> Result<Vec<Row>, FormatError> {
     let (mut written, mut growths) = (Vec::new(), Vec::new());
     for node in xml.elements().filter(|node| is(*node, "m")) {
@@ -255,7 +256,7 @@ fn written_of(node: Node<'_, '_>, line: usize) -> Result<Written, FormatError> {
     })
 }
 
-/// Growth of a measurement over a number of size and height steps.
+/// Growth of a measurement from the base, in the file's unit; `steps` are the numbers of size and height steps.
 fn growth(node: Node<'_, '_>, row: &Written, steps: [f64; 2]) -> Result<f64, FormatError> {
     let number = |field: &str| number_of(node, (field, &row.name), row.line);
     let increments = [number("size_increase")?, number("height_increase")?];
@@ -285,9 +286,9 @@ fn number_of(
     }
 }
 
-/// Contradictions in published tables, in which a name was given to another measurement: two measurements, a
-/// factor, the measurements to leave out, and the reason. If the first measurement is not less than the
-/// factor times the second, the listed measurements are left out.
+/// Checks on a table, since some published tables give a name to another measurement. Each check holds a
+/// measurement, a factor, a second measurement, the names to leave out, and the reason: if the first
+/// measurement is not less than the factor times the second, the measurements of these names are left out.
 const LESS: [(&str, f64, &str, &[&str], &str); 3] = [
     (
         "waist_to_highhip_f",

@@ -175,7 +175,8 @@ fn faces(text: &mut String, mesh: &ObjMesh, triangles: Range<usize>) {
     }
 }
 
-/// A name without line breaks, which would start a new statement.
+/// The name with control characters and backslashes replaced: a line break would start a new statement, and a
+/// backslash at the end would continue the line.
 fn one_line(name: &str) -> String {
     let clean: String = name
         .chars()

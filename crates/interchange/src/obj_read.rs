@@ -166,8 +166,8 @@ impl Reader {
         Ok(corner)
     }
 
-    /// Checks the indices and triangulates. Faces may precede their vertices, so indices are compared with
-    /// the final counts.
+    /// Checks the indices and triangulates the faces. A face may stand before its vertices in the file, so
+    /// indices are checked against the counts at the end of the file.
     fn finish(mut self) -> Result<ObjMesh, FormatError> {
         if self.faces.is_empty() {
             return Err(FormatError::new(

@@ -9,7 +9,8 @@ use toile_lettering::{Font, Line, OutlineKind, Run, plain_bytes};
 /// Number of PDF objects per embedded font: the font, its descendant font, its descriptor, the font file, the
 /// character map and the glyph map.
 const OBJECTS: i32 = 6;
-/// The character collection Adobe-Identity: character codes are the CIDs of the embedded subset.
+/// The character collection Adobe-Identity: the code of a character is the number (CID) of its glyph in the
+/// embedded font.
 const CODES: SystemInfo = SystemInfo {
     registry: Str(b"Adobe"),
     ordering: Str(b"Identity"),

@@ -124,7 +124,7 @@ enum Coding {
     Big,
 }
 
-/// A number type: length in bytes, and decoder of little-endian bytes.
+/// A number type: its length in bytes, and a function that decodes its bytes, the least significant first.
 #[derive(Clone, Copy)]
 struct Number {
     length: usize,
@@ -152,7 +152,7 @@ impl Number {
 
 struct Property {
     name: String,
-    /// The number type of a list's length, for list properties.
+    /// The number type of the list's length; `None` for a property that is a single number, not a list.
     length: Option<Number>,
     number: Number,
 }

@@ -16,7 +16,7 @@ pub fn proportion_boxes() -> Vec<ProportionBox> {
 /// and hip breadth in head lengths.
 ///
 /// # Errors
-/// The fault, its place and a remedy.
+/// The text is no such list, or the list is empty: the fault, its place and a remedy.
 pub fn read_proportions(text: &str) -> Result<Vec<ProportionBox>, FormatError> {
     let hint = "write [{\"name\": \"mine\", \"heads\": 7.5, \"crotch\": 3.6}], lengths in heads";
     let table: Vec<ProportionBox> = serde_json::from_str(text).map_err(|error| {

@@ -169,7 +169,7 @@ impl FileKind {
         }
     }
 
-    /// Remedy for a kind of file that is more specific than "give another file".
+    /// Remedy for a file of this kind; `None` if the user can only give another file.
     fn remedy(self) -> Option<&'static str> {
         match self {
             Self::Empty => Some("it holds nothing: it may not have been saved"),
@@ -362,7 +362,7 @@ fn root_element(text: &str) -> Option<&str> {
     }
 }
 
-/// Recognises a kind of JSON by the fields of the object; `None` for damaged JSON.
+/// Recognises a kind of JSON by the fields of the object; `None` for damaged JSON and for unknown fields.
 fn of_json(text: &str) -> Option<FileKind> {
     let mut objects = serde_json::Deserializer::from_str(text).into_iter::<Map<String, Value>>();
     let head = objects.next()?.ok()?;

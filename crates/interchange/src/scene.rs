@@ -37,7 +37,8 @@ pub struct SceneFile {
     /// Damping of all objects.
     #[serde(default)]
     pub damping: DampingFile,
-    /// Simulated time (s). Default: 1 s, or until the figures of the scene have stood still for 1 s.
+    /// Simulated time (s). Default: until all figures that come to rest have stood still for 1 s, or 1 s if
+    /// there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<f64>,
     /// Time step (s).
@@ -110,7 +111,7 @@ pub struct AirFile {
     /// Drag coefficient per mass (1/s).
     #[serde(default)]
     pub drag: f64,
-    /// Density (kg/m3). Default: that at sea level if a drag coefficient or the wind is given.
+    /// Density (kg/m3). Default: that at sea level if `normal`, `tangential` or `wind` is given, or else 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
     /// Drag coefficient normal to the cloth.
@@ -176,8 +177,8 @@ pub struct MethodFile {
     /// Largest number of iterations in a substep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub iterations: Option<usize>,
-    /// Tolerance at which iterations stop: a gradient (N) for motion in time, net force divided by weight for
-    /// rest.
+    /// Tolerance at which iterations stop: norm of a gradient (N) if the method computes motion in time, net
+    /// force divided by weight if it computes the state of rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     #[serde(flatten)]
@@ -225,7 +226,7 @@ pub struct ObjectFile {
     pub name: String,
     /// Kind of the object: `static`, `animated` or `deformable`.
     pub kind: String,
-    /// An OBJ file, with a path relative to the scene file.
+    /// A mesh file (OBJ or PLY), with a path relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<String>,
     /// A pattern file. Its garment is sewn on the body `on`, or else on the first body of the scene.
@@ -343,7 +344,7 @@ fn earth() -> [f64; 3] {
 fn one() -> f64 {
     1.0
 }
-/// Largest number of substeps or iterations in a file: more is surely a mistake.
+/// Largest number of substeps, and of iterations, that a file may ask for: more is surely a mistake.
 const MAX_ITERATIONS: usize = 1_000_000;
 
 fn usual_step() -> f64 {

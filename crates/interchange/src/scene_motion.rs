@@ -10,7 +10,7 @@ use toile_geometry::Vec3;
 pub(crate) type Unknown = BTreeMap<String, Value>;
 
 /// A motion as written in the file. A solid moves by keys, linearly from key to key, and rests before the
-/// first key and after the last. A body moves by a clip, and keys turn it about itself.
+/// first key and after the last. A body moves by a clip; keys then turn it about its own root and shift it.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct MotionFile {
     /// The pivot of rotations, in the scene (m).

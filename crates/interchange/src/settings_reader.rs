@@ -80,7 +80,8 @@ enum Place<'a> {
 }
 
 impl<'s, 'a> SettingsReader<'s, 'a> {
-    /// A reader of a part, with the name of the expected type and the fields that the file does not have.
+    /// A reader of a part; `expected` is the name of its type for messages, `without` lists the fields of the
+    /// part that this kind of file refuses.
     pub fn new(item: &Item<'a>, expected: &'s str, without: &'s [&'s str]) -> Self {
         Self {
             item: item.clone(),
@@ -92,7 +93,7 @@ impl<'s, 'a> SettingsReader<'s, 'a> {
         }
     }
 
-    /// Adds fields that another reader reads.
+    /// Names the fields that another reader reads, so that they do not count as unknown here.
     pub fn with(self, besides: &'s [&'s str]) -> Self {
         Self { besides, ..self }
     }

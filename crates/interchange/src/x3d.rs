@@ -42,7 +42,7 @@ impl Turns {
 /// Also returns notes on everything left out.
 ///
 /// # Errors
-/// The fault, the line or node of it and the remedy; also a file that rotates no joint.
+/// The text is neither VRML nor X3D, or it rotates no joint: the fault, its line or node, and a remedy.
 pub fn read_x3d(text: &str, skeleton: &Skeleton) -> Result<(Clip, Vec<String>), FormatError> {
     let scene = read_scene(text)?;
     let clip = Animation::of(&scene)?;
@@ -99,8 +99,11 @@ fn read_scene(text: &str) -> Result<Scene, FormatError> {
 
 /// The rotations and translations of one clip.
 struct Animation<'a> {
+    /// The TimeSensor of the clip.
     clock: Option<&'a Node>,
+    /// Rotations of each joint.
     turns: BTreeMap<Joint, Turns>,
+    /// Displacements of the root, each with its time as a fraction of the cycle.
     moves: Option<Vec<(f64, Vec3)>>,
     notes: Vec<String>,
 }
@@ -187,6 +190,7 @@ impl<'a> Animation<'a> {
 
 /// A route from an interpolator to a node.
 struct JointRoute<'a> {
+    /// The interpolator.
     by: &'a Node,
     /// The joint that the target node stands for, if the skeleton has it.
     joint: Option<Joint>,
@@ -347,7 +351,7 @@ fn rest_of_root(bones: &[Bone]) -> Vec3 {
     Vec3::new(0.0, place[0].y - low, 0.0)
 }
 
-/// Keys of an interpolator in ascending order, each with `width` values.
+/// The keys of an interpolator with their values, in ascending order; `width` is the number of values of a key.
 fn keys(node: &Node, width: usize) -> Result<Vec<(f64, Vec<f64>)>, FormatError> {
     let (key, value) = (node.numbers("key")?, node.numbers("keyValue")?);
     if key.is_empty() || key.len() * width != value.len() {

@@ -80,8 +80,8 @@ impl<'a> Xml<'a> {
     }
 }
 
-/// The line of the first entity declaration, if all entities together, with all references to them, may
-/// expand beyond [`MAX_EXPANDED_BYTES`].
+/// The line of the first entity declaration, if the text could expand beyond [`MAX_EXPANDED_BYTES`]: the length
+/// of all entities together, times the number of references, times [`MAX_DEPTH`] if entities name entities.
 fn entity_bomb(text: &str) -> Option<usize> {
     const DECLARATION: &str = "<!ENTITY";
     let first = text.find(DECLARATION)?;

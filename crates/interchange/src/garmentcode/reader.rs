@@ -82,6 +82,7 @@ type Place = (EdgeId, bool);
 struct Builder {
     pattern: Pattern,
     notes: Vec<FormatError>,
+    /// Names of panels that are taken.
     names: BTreeSet<String>,
     /// For each panel of the file and each of its edges, the edge of the document that was made from it.
     edges: Vec<Vec<Option<Place>>>,
@@ -340,8 +341,8 @@ impl PlacedStitch {
     }
 }
 
-/// Whether all outlines are wound as seen from the right side: wherever the positions in space tell, the
-/// edges of two panels are sewn start to end.
+/// Whether all outlines are wound as seen from the right side. They are if the edges of two panels are sewn
+/// start to end wherever the positions in space tell which ends meet.
 fn right_sides_out(specification: &Specification) -> bool {
     let between = |stitch: &&SpecStitch| stitch.sides[0].0 != stitch.sides[1].0;
     let stitches = specification.stitches.iter().filter(between);
@@ -349,6 +350,7 @@ fn right_sides_out(specification: &Specification) -> bool {
     placed.all(|stitch| stitch.nearer_ends_run_against || !stitch.is_clear())
 }
 
+/// Whether an edge cannot take its label as its name: it is no valid name, or one that unlabelled edges get.
 fn is_plain(label: &str) -> bool {
     let clean = toile_pattern::is_part_name(label);
     let digits = label
@@ -357,6 +359,7 @@ fn is_plain(label: &str) -> bool {
     !clean || digits
 }
 
+/// Number of edges of a panel with each label.
 fn label_counts(panel: &SpecPanel) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for label in panel.edges.iter().filter_map(|e| e.label.as_ref()) {

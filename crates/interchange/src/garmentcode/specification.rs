@@ -34,6 +34,7 @@ pub(super) struct SpecPanel {
 /// An edge.
 #[derive(Debug)]
 pub(super) struct SpecEdge {
+    /// Indices of the panel's vertices at the start and at the end.
     pub ends: [usize; 2],
     pub curve: Curve,
     pub label: Option<String>,
@@ -46,9 +47,11 @@ pub(super) struct SpecStitch {
     pub sides: [(usize, usize); 2],
     /// Whether a right side is sewn onto a wrong side.
     pub right_wrong: bool,
+    /// Place of the stitch in the file, for messages.
     pub path: String,
 }
 
+/// The unit and the kind of coordinates of a file.
 struct Settings {
     /// Size of a file unit (m).
     metres: f64,

@@ -8,9 +8,10 @@ use toile_pattern::{Draft, DraftSeam, Facing, Piece, PieceEdge, Worn};
 
 /// Size of the file unit, the centimetre (m).
 const UNIT: f64 = 0.01;
-/// Two cuts nearer to each other than this fraction of an edge are the same cut.
+/// Two points at which an edge is cut count as one if they are nearer to each other than this fraction of its
+/// length (1).
 const SAME_CUT: f64 = 1e-7;
-/// Largest number of rounds in which cuts are carried across seams.
+/// Largest number of rounds in which cuts on one side of a seam are copied to its other side.
 const MAX_ROUNDS: usize = 32;
 
 /// A written file.
@@ -90,6 +91,7 @@ fn edges(piece: &Piece) -> impl Iterator<Item = &PieceEdge> {
     piece.outline.iter().chain(piece.holes.iter().flatten())
 }
 
+/// The spans of a seam's side in order; spans on pieces that are not written are left out.
 fn chain(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<Stretch> {
     let mut walked = 0.0;
     let mut stretches = Vec::new();
@@ -122,10 +124,12 @@ fn chain(draft: &Draft, seam: &DraftSeam, side: usize) -> Vec<Stretch> {
 }
 
 impl Stretch {
+    /// Fraction of the side's length at a fraction of the edge.
     fn place_of(&self, fraction: f64) -> f64 {
         self.start + (self.end - self.start) * (fraction - self.from) / (self.to - self.from)
     }
 
+    /// Fraction of the edge at a fraction of the side's length.
     fn fraction_at(&self, place: f64) -> f64 {
         self.from + (self.to - self.from) * (place - self.start) / (self.end - self.start)
     }
@@ -140,7 +144,8 @@ impl Writer<'_> {
         ));
     }
 
-    /// Cuts edges at the ends of spans, and carries every cut across every seam until no new cut arises.
+    /// Cuts edges at the ends of spans, and copies every cut on one side of a seam to its other side until no
+    /// new cut arises.
     fn find_cuts(&mut self) {
         let start = |piece: &Piece| edges(piece).map(|_| vec![0.0, 1.0]).collect();
         self.cuts = self.draft.pieces.iter().map(start).collect();
@@ -184,6 +189,7 @@ impl Writer<'_> {
         places
     }
 
+    /// Cuts an edge at a fraction of its length; returns whether it was not cut there before.
     fn cut(&mut self, piece: usize, edge: usize, fraction: f64) -> bool {
         let cuts = &mut self.cuts[piece][edge];
         if cuts.iter().any(|c| (c - fraction).abs() <= SAME_CUT) {

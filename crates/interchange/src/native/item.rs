@@ -15,7 +15,7 @@ pub struct Item<'a> {
     pub path: String,
 }
 
-/// A number as written: a value (m), (rad) or plain, or the text of a formula.
+/// A number as written: a value (a length in m, an angle in rad, or a plain number) or the text of a formula.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Written<'a> {
     Value(f64),
@@ -199,6 +199,8 @@ impl<'a> Item<'a> {
         )
     }
 
+    /// Reads a number by the function `read`, or a formula. An object whose only key is `exact_unit`
+    /// holds the number in that unit.
     fn read_number(
         &self,
         wanted: &str,
@@ -313,9 +315,9 @@ impl<'a> Object<'a> {
         })
     }
 
-    /// The kind of the object: the first kind whose distinguishing fields are all present. An object with
-    /// fields of two kinds is refused, since the fields of one would be lost. An object of no kind is refused
-    /// if `clash` says so.
+    /// Index of the object's kind: the first of `kinds` whose distinguishing fields are all present. An object
+    /// with fields of two kinds is refused, since the fields of one would be lost. An object of no kind is
+    /// refused if `clash` says so; otherwise `None` is returned.
     pub fn kind(&self, kinds: &[Kind], clash: &Clash) -> Result<Option<usize>, FormatError> {
         let tells = |kind: &Kind| match kind.told {
             Told::Field(_) | Told::By(_) => {

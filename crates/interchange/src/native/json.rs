@@ -4,7 +4,7 @@
 use crate::FormatError;
 use std::collections::BTreeSet;
 
-/// Deepest nesting that is read. No file of this program nests deeper than ten.
+/// Largest number of lists and objects inside one another. No file of this program nests deeper than ten.
 const DEEPEST: usize = 64;
 
 /// A value and its position in the text.

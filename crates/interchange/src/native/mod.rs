@@ -38,7 +38,7 @@ use crate::FormatError;
 use item::Item;
 use toile_pattern::{Diagnostic, Pattern};
 
-/// The version of the format.
+/// The version of the format that is written and read.
 const VERSION: u32 = 2;
 
 /// The content of a pattern file: the pattern and the fitting of its garment.

@@ -26,6 +26,7 @@ pub fn write_part(writer: &Writer, part: &dyn Fields) -> Result<Json, FormatErro
 enum Form {
     Object(Object),
     List(Vec<Json>),
+    /// A bare value, not an object with fields.
     Itself(Json),
 }
 

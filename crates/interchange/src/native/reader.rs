@@ -10,12 +10,15 @@ use toile_measure::Measurements;
 use toile_pattern::fields::{Clash, Kind};
 use toile_pattern::{AnyId, Diagnostic, DisplayUnit, Formula, Names, Number, PartId, SizeId, Want};
 
-/// State of the reader.
+/// State of reading a pattern file: everything that the parts of the file share.
 pub struct Reader<'a> {
+    /// Notes on unknown fields.
     pub notes: Vec<Diagnostic>,
     /// The first error found in the fields of a part; after it, no more fields are read.
     pub fault: Option<FormatError>,
+    /// Unit of the lengths in the file.
     pub unit: DisplayUnit,
+    /// Names of parts, by which formulas refer to them.
     names: Names,
     /// Ids that the parts of the file have.
     given: HashMap<u32, PartId>,
@@ -60,8 +63,8 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Refuses references to an id of another kind or to an id never given. A reference to a deleted part is
-    /// allowed: it becomes valid when the part is restored.
+    /// Refuses a next id that is not above the ids of all parts, and references to an id of another kind or to
+    /// an id never given. A reference to a deleted part is allowed: it becomes valid when the part is restored.
     pub fn check_ids(&self, item: &Item<'_>, next: u32) -> Result<(), FormatError> {
         if let Some((highest, id)) = self.given.iter().max_by_key(|(number, _)| **number)
             && *highest >= next

@@ -5,7 +5,8 @@ use toile_pattern::DisplayUnit;
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
 
-/// Power of ten from metres to the unit; `None` for units that are not decimal.
+/// Power of ten by which a number of metres is multiplied to get the unit; `None` for units that are not
+/// decimal.
 fn decimals(unit: DisplayUnit) -> Option<i32> {
     match unit {
         DisplayUnit::Metre => Some(0),
@@ -15,7 +16,7 @@ fn decimals(unit: DisplayUnit) -> Option<i32> {
     }
 }
 
-/// The length of a number in a file (m); `None` if it is not finite.
+/// The length (m) that a number in a file stands for; `None` if it is not finite.
 pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
     let value = match decimals(unit) {
         Some(places) => shifted(raw, -places)?,
@@ -27,7 +28,7 @@ pub fn read_length(raw: &str, unit: DisplayUnit) -> Option<f64> {
 /// Largest length that is written (m): larger ones might exceed the number range of other programs.
 const LARGEST: f64 = 1e290;
 
-/// The number for a length (m); `None` if no number is read back exactly.
+/// The number that is written for a length (m); `None` if no number is read back as exactly this length.
 pub fn write_length(value: f64, unit: DisplayUnit) -> Option<String> {
     if value.abs() > LARGEST {
         return None;
@@ -40,13 +41,14 @@ pub fn write_length(value: f64, unit: DisplayUnit) -> Option<String> {
     candidates.into_iter().find(exact)
 }
 
-/// The angle of a number of degrees in a file (rad); `None` if it is not finite.
+/// The angle (rad) that a number of degrees in a file stands for; `None` if it is not finite.
 pub fn read_degrees(raw: &str) -> Option<f64> {
     let degrees: f64 = raw.parse().ok()?;
     degrees.is_finite().then(|| degrees.to_radians())
 }
 
-/// The number of degrees for an angle (rad); `None` if no number is read back exactly.
+/// The number of degrees that is written for an angle (rad); `None` if no number is read back as exactly this
+/// angle.
 pub fn write_degrees(value: f64) -> Option<String> {
     let exact = |raw: &String| read_degrees(raw).map(f64::to_bits) == Some(value.to_bits());
     neighbours(value.to_degrees()).into_iter().find(exact)
@@ -78,7 +80,7 @@ fn neighbours(value: f64) -> Vec<String> {
     .collect()
 }
 
-/// The number times a power of ten, correctly rounded.
+/// The number `raw` times ten to the power of `places`, correctly rounded.
 fn shifted(raw: &str, places: i32) -> Option<f64> {
     let (digits, exponent) = match raw.split_once(['e', 'E']) {
         Some((digits, exponent)) => (digits, exponent.parse::<i32>().ok()?),

@@ -55,9 +55,11 @@ pub fn count(number: u32) -> Value {
     Value::Number(number.to_string())
 }
 
-/// State of the writer.
+/// State of writing a pattern file: everything that the parts of the file share.
 pub struct Writer {
+    /// Unit of the lengths in the file.
     unit: DisplayUnit,
+    /// Names of parts, by which formulas refer to them.
     names: Names,
 }
 

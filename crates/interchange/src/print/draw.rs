@@ -10,28 +10,32 @@ use toile_geometry::{Polygon, Vec2};
 pub(crate) const BLACK: Ink = [0.07, 0.07, 0.07];
 const BLUE: Ink = [0.12, 0.31, 0.62];
 const PURPLE: Ink = [0.55, 0.2, 0.55];
-/// Smallest width on a projector (m): of lines in general, and of lines to cut along.
+/// Smallest line widths on a projector (m): of lines to cut along (second), and of all other lines (first).
 const PROJECTED: [f64; 2] = [0.0012, 0.002];
-/// Letter sizes beside the fold and beside the grain line (m).
+/// Letter size of the text beside the fold (m).
 const FOLD_LETTERS: f64 = 0.005;
+/// Letter size of the text beside the grain line (m).
 const GRAIN_LETTERS: f64 = 0.0035;
-/// Positions along a line that are tried for its text, the preferred first (fraction of its length).
+/// Positions that are tried for the text beside the fold or the grain line, the preferred first (fraction of
+/// the line's length).
 const ALONG_PLACES: [f64; 5] = [0.5, 0.38, 0.62, 0.26, 0.74];
-/// Largest letter size relative to the length of the line, so that the text fits.
+/// Largest letter size of the text beside the fold or the grain line, as a fraction of the line's length: the
+/// text then is no longer than the line.
 const ALONG_SHARE: f64 = 0.1;
 
 /// Largest letter size of a piece's texts (m).
 const LETTERS: f64 = 0.012;
-/// Arrow in the direction in which a dart or pleat is pressed: largest length (m), largest length relative to
-/// the width of the folded part, length of the head relative to the arrow, half width of the head relative to
-/// its length.
+/// Largest length of the arrow in the direction in which a dart or pleat is pressed (m).
 const ARROW: f64 = 0.018;
+/// Largest length of that arrow relative to the width of the folded part (1).
 const ARROW_SHARE: f64 = 0.9;
+/// Length of the arrow's head relative to the arrow's length (1).
 const HEAD: f64 = 0.3;
+/// Half the width of the arrow's head relative to the head's length (1).
 const HEAD_WIDTH: f64 = 0.5;
 
-/// Colour and dash length (m) of the lines of each size, used in turn: the sizes differ in colour and also in
-/// black and white.
+/// Colour and dash length (m) of the lines of each size, used in turn: the colours tell the sizes apart, and
+/// the dashes do so in black and white.
 const SIZES: [(Ink, f64); 8] = [
     ([0.07, 0.07, 0.07], 0.0),
     ([0.75, 0.1, 0.15], 0.012),
@@ -228,8 +232,8 @@ fn words_mark(words: Words) -> Mark {
     }
 }
 
-/// A text along the fold or the grain line, inside the piece: at the middle, or at another position if it
-/// would cross one of the lines `clear_of` there.
+/// A text along the fold or the grain line, inside the piece: at the middle of that line, or at another
+/// position along it if the text would cross one of the lines `clear_of` there.
 fn words_along(
     [from, to]: [Vec2; 2],
     (text, letters, ink): (&str, f64, Ink),

@@ -44,13 +44,17 @@ pub(crate) struct Mark {
     pub shape: Shape,
 }
 
-/// A page: marks clipped to the window, and marks drawn on top without clipping.
+/// A page of a print.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Page {
+    /// Width and height (m).
     pub size: Vec2,
     pub name: String,
+    /// The part of the page that shows the drawing (m).
     pub window: Bounds2,
+    /// Marks of the drawing, clipped to the window.
     pub inside: Vec<Mark>,
+    /// Marks drawn over the drawing, without clipping.
     pub on_top: Vec<Mark>,
 }
 

@@ -59,7 +59,7 @@ pub struct PrintLayer {
 /// A piece to print, in one size or in several that are stacked as drafted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PrintPiece {
-    /// Index of each size, with the piece in that size.
+    /// Indices of sizes in [`PrintJob::layers`], each with the piece in that size.
     pub sizes: Vec<(usize, Arc<CutPiece>)>,
     /// Lines of text written on the piece.
     pub words: Vec<String>,
@@ -91,7 +91,7 @@ pub struct PrintJob {
 /// Arm length of the crosses at which sheets are joined (m).
 const CROSS: f64 = 0.004;
 const GREY: [f32; 3] = [0.55, 0.55, 0.55];
-/// Line style of frames and crosses.
+/// Line style of the frame of a sheet and of the crosses at which sheets are joined.
 const JOIN: LineStyle = LineStyle {
     layer: None,
     ink: GREY,
@@ -101,7 +101,7 @@ const JOIN: LineStyle = LineStyle {
 /// Spacing of the lines that texts keep clear of (m): less than the height of the smallest letters, so that
 /// no text fits between them.
 const ACROSS: f64 = 0.001;
-/// Distance between texts and the overlap of sheets (m).
+/// Smallest distance between a text and the overlap of two sheets (m).
 const BESIDE: f64 = 0.004;
 /// Letter size of a sheet's row and column (m).
 const PLACE_LETTERS: f64 = 0.004;
@@ -170,7 +170,7 @@ impl PrintJob {
         Ok(())
     }
 
-    /// All marks of the drawing that do not depend on the division into sheets.
+    /// All marks of the drawing; the frames, crosses and numbers of the sheets and their map are added later.
     fn marks(&self) -> Vec<Mark> {
         let clear_of = self.between_sheets();
         let mut marks = Vec::new();
@@ -189,7 +189,7 @@ impl PrintJob {
         };
         let bare = self.pieces.iter();
         let bare = bare.flat_map(|piece| draw::piece_marks(self, piece, None));
-        // The position of the grain line depends on the texts.
+        // Without the grain line: its position depends on the texts, which are not placed yet.
         let is_grain = |mark: &Mark| match &mark.shape {
             Shape::Line { style, .. } => style.layer == Some(Layer::Grain),
             Shape::Text { .. } => false,

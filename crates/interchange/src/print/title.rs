@@ -24,11 +24,15 @@ pub struct TitleBlock {
 
 /// Distance of the content from the block's border (m).
 const INSET: f64 = 0.004;
+/// Width of the block (m).
 const WIDTH: f64 = 0.172;
+/// Letter size of the pattern's name (m).
 const TITLE_LETTERS: f64 = 0.007;
+/// Letter size of all other text (m).
 const LETTERS: f64 = 0.0035;
+/// Distance from one line to the next (m).
 const LINE: f64 = 0.0055;
-/// Largest number of lines of facts and of the legend.
+/// Largest number of lines of facts, and largest number of lines of the legend.
 const MAX_LINES: usize = 10;
 
 const THIN: LineStyle = LineStyle {
@@ -39,7 +43,7 @@ const THIN: LineStyle = LineStyle {
 };
 
 impl TitleBlock {
-    /// Size of the block (m), for a number of sizes.
+    /// Width and height of the block (m) in a print of `sizes` sizes of the pattern.
     pub fn size(&self, sizes: usize) -> Vec2 {
         let rows = self.facts_within().len().max(legend_rows(sizes));
         let height = TITLE_LETTERS + LINE * rows as f64 + self.test_box().0.y + 6.0 * INSET;
@@ -156,7 +160,7 @@ fn test_box(low: Vec2, (size, name): (Vec2, &str)) -> Vec<Mark> {
     ]
 }
 
-/// A map of the sheets, right of the test box.
+/// A map of the sheets, drawn to the right of the test box.
 pub(crate) fn map_marks(job: &PrintJob, tiles: &[Tile]) -> Vec<Mark> {
     let rows = tiles.iter().map(|t| t.place[0]).max().unwrap_or(1);
     let columns = tiles.iter().map(|t| t.place[1]).max().unwrap_or(1);
