@@ -6,7 +6,8 @@ use toile_geometry::Vec3;
 /// A section of the left arm: its centre (m) and girth (m).
 pub(crate) type Ring = (Vec3, f64);
 
-/// Tip of the left hand: the point that is farthest out sideways, with a smaller weight on being far down.
+/// Tip of the left hand (m): of all points above a third of the height, the one with the largest `x - 0.3 y`,
+/// which lies far out sideways and, with less weight, far down.
 pub(crate) fn finger_tip(scan: &Scan) -> Vec3 {
     let height = scan.height();
     let reach = |p: &Vec3| p.x - 0.3 * p.y;
@@ -17,8 +18,8 @@ pub(crate) fn finger_tip(scan: &Scan) -> Vec3 {
         .unwrap_or_default()
 }
 
-/// Sections of the left arm from the finger tips to its junction with the trunk, each square to the line
-/// through the centres of the sections.
+/// Sections of the left arm, from the finger tips at `tip` to where the arm joins the trunk at the height
+/// `armpit` (m). Each is square to the line through the centres of the sections before it.
 pub(crate) fn arm_rings(scan: &Scan, tip: Vec3, armpit: f64) -> Vec<Ring> {
     let height = scan.height();
     let step = 0.012 * height;
@@ -54,8 +55,8 @@ pub(crate) fn arm_rings(scan: &Scan, tip: Vec3, armpit: f64) -> Vec<Ring> {
     rings
 }
 
-/// The section square to a direction: the loop nearest to `origin`, or on a hand all loops near it (the
-/// fingers).
+/// The section of the mesh through `origin`, square to `along`: the loop nearest to `origin`, or, on a hand,
+/// all loops near it, since each finger is a loop.
 fn ring_at(scan: &Scan, origin: Vec3, along: Vec3, is_hand: bool) -> Option<Ring> {
     let first = along.cross(&Vec3::z()).try_normalize(1e-6)?;
     let second = first.cross(&along);

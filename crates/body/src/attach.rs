@@ -8,8 +8,8 @@ use toile_geometry::Vec3;
 /// A primitive that moves with a joint, rigidly or also changing with the angle of a reference joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttachedPrimitive {
-    /// The joint that the primitive is fixed to. By default it is the root-side end of the bone that the
-    /// primitive lies round.
+    /// The joint that the primitive is fixed to. By default this is the end of a bone: of the bone that the
+    /// primitive lies round, the end nearer to the root.
     pub joint: Joint,
     /// The primitive, its centre and rotation in the joint's frame.
     pub local: Primitive,
@@ -56,7 +56,7 @@ impl AttachedPrimitive {
     }
 }
 
-/// Primitives in the body's frame in a pose.
+/// The primitives as they lie in the body's frame in a pose.
 pub(crate) fn posed(
     primitives: &[AttachedPrimitive],
     skeleton: &Skeleton,

@@ -10,7 +10,7 @@ use toile_geometry::{TriangleMesh, Vec3};
 pub(crate) enum Near {
     /// Heights above the floor (m).
     Level([f64; 2]),
-    /// Heights square to a tape round the neck, which lies lower in front (m).
+    /// Heights along the normal of a tape round the neck, see [`neck_height`] (m).
     Neck([f64; 2]),
     /// Distances from the shoulder joint along the arm (m).
     Arm([f64; 2]),
@@ -19,15 +19,17 @@ pub(crate) enum Near {
 }
 
 impl Near {
-    /// The range of the template (m) for a range of distances from the median plane of the body (m), which is
-    /// scaled sideways by `least` to `most`, between heights of the template (m).
+    /// Range on the template for the points of a body between two distances from the median plane (m). The
+    /// body is the template scaled sideways by `least` to `most`; `heights` are heights on the template (m).
     pub(crate) fn side(places: [f64; 2], [least, most]: [f64; 2], heights: [f64; 2]) -> Self {
         let [low, high] = [places[0].min(places[1]), places[0].max(places[1])];
         Self::Side([low / most - 0.025, high / least + 0.025], heights)
     }
 }
 
-/// The triangles of the left half, sorted in several ways by the position of their first corner.
+/// The triangles of a template's left half in four lists. Each list is sorted by one coordinate of the
+/// triangle's first corner (m): height, height along the normal of a neck tape, distance along the arm, or
+/// distance from the median plane.
 pub(crate) struct Bands {
     level: Vec<(f64, u32)>,
     neck: Vec<(f64, u32)>,
@@ -40,8 +42,8 @@ pub(crate) struct Bands {
 }
 
 impl Bands {
-    /// Sorts the left half of a template's triangles; arm triangles by distance along the arm from the
-    /// shoulder.
+    /// Sorts the left half of a template's triangles. Distances along the arm are measured from the point
+    /// `shoulder` in the direction `along`.
     pub(crate) fn new(mesh: &TriangleMesh, parts: &[Part], [shoulder, along]: [Vec3; 2]) -> Self {
         let half = mesh.triangles.len() / 2;
         let first = |t: usize| mesh.positions[mesh.triangles[t][0] as usize];
@@ -88,7 +90,8 @@ impl Bands {
     }
 }
 
-/// Height of a point measured square to a tape round the neck (m).
+/// Coordinate of a point along the normal of a tape round the neck (m). The tape is lower in front by
+/// [`NECK_TILT`].
 pub(crate) fn neck_height(p: Vec3) -> f64 {
     let (sin, cos) = NECK_TILT.sin_cos();
     p.y * cos + p.z * sin

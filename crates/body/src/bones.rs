@@ -19,7 +19,8 @@ pub(crate) fn skeleton(template: &Template, warp: &Warp) -> Skeleton {
     Skeleton::new(Joint::ALL.map(|joint| {
         let left = joint.min(joint.mirrored());
         let at = match joint {
-            // Half-way between the hip joints of this body, which follow the legs and not the trunk.
+            // Half-way between the hip joints of this body, which are moved with the legs and not with the
+            // trunk.
             Joint::HumanoidRoot => {
                 let hip = carried(Joint::LHip);
                 Vec3::new(0.0, hip.y, hip.z)
@@ -73,11 +74,12 @@ pub(crate) fn place(joints: &Joints, joint: Joint) -> Vec3 {
 const LUMBAR: f64 = 1.0 / 3.0;
 /// Position of the instep's joint, as a share of the way from ankle to toes; its height is half the ankle's.
 const INSTEP: f64 = 0.4;
-/// Distance of a collar's inner end from the median plane, over the distance of the shoulder joint.
+/// Distance of a collar's inner end from the median plane, as a share of the shoulder joint's distance from
+/// it.
 const COLLAR: f64 = 0.15;
 
-/// The joint that a primitive of a template is fixed to: among the bones that may carry its part, the one
-/// nearest to its centre; of equally near ones, the one nearest to the root.
+/// The joint that a primitive of a template is fixed to: the start of a bone. Of the bones that may carry the
+/// primitive's part, the nearest to its centre is taken; of equally near ones, the nearest to the root.
 pub(crate) fn joint_of(template: &Template, primitive: &Primitive) -> Joint {
     if primitive.is_right() {
         return joint_of(template, &primitive.mirrored()).mirrored();

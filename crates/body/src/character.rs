@@ -7,14 +7,14 @@ use toile_realtime::{
     Character, CharacterEllipsoid, CharacterJoint, Ellipsoids, Field, Group, KeyPose, KeyedClip,
 };
 
-/// Share of the skin nearest to an ellipsoid that must lie inside the ellipsoid. At a share of 1 the
-/// ellipsoids beside a crease would swell.
+/// Share of the skin's vertices nearest to an ellipsoid that must lie inside it. With a share of 1, the
+/// ellipsoids beside a crease would become too large.
 const COVERED: f32 = 0.9;
 
-/// Largest enlargement of an ellipsoid (m).
+/// Largest length added to the semi-axes of an ellipsoid so that it covers the skin (m).
 const MAX_ENLARGED: f32 = 0.03;
 
-/// The name of a part's group.
+/// Name of the group of a part's ellipsoids.
 fn group(part: Part) -> &'static str {
     match part {
         Part::Trunk => "trunk",
@@ -31,9 +31,10 @@ fn single(v: Vec3) -> [f32; 3] {
 }
 
 impl Mannequin {
-    /// The body as a character with some named clips: an ellipsoid for every primitive, in groups by part.
-    /// Every other group touches only the trunk. Where primitives blend, the skin lies outside their
-    /// ellipsoids: each ellipsoid is enlarged until it holds most of the skin that it is nearest to.
+    /// The body as a character with some named clips: an ellipsoid for every primitive, in a group for each
+    /// part. The groups of head, arms and legs touch only that of the trunk. Where primitives blend, the skin
+    /// lies outside their ellipsoids: each ellipsoid is enlarged until it holds most of the skin that it is
+    /// nearest to.
     ///
     /// # Errors
     /// [`BodyError::NotRigid`] for a primitive that changes with a reference joint: a character's ellipsoids
@@ -80,7 +81,7 @@ impl Mannequin {
         Ok(character)
     }
 
-    /// Enlarges the ellipsoids until they hold most of the skin at rest.
+    /// Enlarges each ellipsoid until it holds most of the skin at rest that it is nearest to.
     fn cover(&self, character: &mut Character) {
         let Ok(ellipsoids) = Ellipsoids::new(character) else {
             return;

@@ -8,10 +8,10 @@ use nalgebra::UnitQuaternion;
 use rayon::prelude::*;
 use toile_geometry::{MovingSurface, TriangleMesh, Vec3};
 
-/// A clip in which limbs keep a gap, and the turns that this took.
+/// A clip in which limbs keep a gap from the rest of the body, with the turns that were needed for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cleared {
-    /// The clip; identical to the given one, bit by bit, where no limb had to be turned.
+    /// The clip. If no limb had to be turned, it is identical to the given one, bit by bit.
     pub clip: Clip,
     /// The largest turn of a shoulder and of a hip (rad).
     pub largest_turn: [f64; 2],
@@ -19,21 +19,23 @@ pub struct Cleared {
     pub unclear: Vec<f64>,
 }
 
-/// Largest outward turns of shoulders and hips (rad): 25 and 8 degrees. Beyond them a figure no longer moves
-/// as the clip shows.
+/// Largest outward turn of a shoulder (rad): 25 degrees. Beyond it a figure no longer moves as the clip
+/// shows.
 const MAX_SHOULDER: f64 = 25.0 * std::f64::consts::PI / 180.0;
+/// Largest outward turn of a hip (rad): 8 degrees, for the same reason.
 const MAX_HIP: f64 = 8.0 * std::f64::consts::PI / 180.0;
 /// Distance, as a share of stature, from the junction of two parts within which skin is not checked: there it
 /// touches in any pose.
 const JOINED: f64 = 0.075;
 /// Least number of poses checked per second.
 const LOOKS: f64 = 30.0;
-/// Time before and after a turn over which its largest value is held and then smoothed (s).
+/// Time before and after a checked pose (s): the pose gets the largest turn within this time, and the turns
+/// are then averaged over it.
 const SPREAD: f64 = 0.1;
-/// Halvings in the search for the least turn: to 0.8 degrees of a shoulder.
+/// Number of halvings in the search for the least turn: they find a shoulder's turn to 0.8 degrees.
 const HALVINGS: usize = 5;
 /// Largest distance at which the skin of another part is looked for (m). A limb that lies deeper in another
-/// part passed through smaller depths at earlier moments.
+/// part passed through smaller depths at earlier moments, where it was found.
 const DEEPEST: f64 = 0.08;
 
 /// Limbs that are turned: the left arm, the right arm, both legs alike.
@@ -55,7 +57,8 @@ const CHANNELS: [Channel; 3] = [
     },
 ];
 
-/// A limb that is turned outward.
+/// Joints that are turned outward together, by the angle `most` (rad) at most, until the skin of `limb` keeps
+/// its gap.
 struct Channel {
     /// The joints, each with the sign of an outward turn about z.
     joints: &'static [(Joint, f64)],
@@ -80,7 +83,8 @@ impl Channel {
     }
 }
 
-/// The skin of a limb away from its joint, and the surface of the parts that the limb keeps away from.
+/// The skin that is checked for a channel: `vertices` of its limb, away from the junctions with other parts,
+/// and `others`, the surface of the parts that the limb keeps away from.
 struct Watched {
     channel: &'static Channel,
     vertices: Vec<u32>,
@@ -177,8 +181,8 @@ impl Watched {
 impl Clip {
     /// The clip with shoulders and hips turned outward, pose by pose, by the least angle with which arms keep
     /// a gap (m) from all other parts and legs from each other, away from their junctions; at most 25 degrees
-    /// at shoulders and 8 at hips. Turns are raised to their maximum over a tenth of a second to both sides
-    /// and then smoothed, so that nothing jumps; a loop stays a loop.
+    /// at shoulders and 8 at hips. Each turn becomes the largest within a tenth of a second before and after
+    /// it, and the turns are then smoothed, so that nothing jumps; a loop stays a loop.
     pub fn cleared(&self, body: &Mannequin, gap: f64) -> Cleared {
         let every = ((1.0 / (LOOKS * self.step.max(1e-6))).floor() as usize).max(1);
         let looks: Vec<usize> = (0..self.poses.len()).step_by(every).collect();
@@ -222,8 +226,8 @@ impl Clip {
     }
 }
 
-/// Numbers raised to their maximum over `spread` neighbours to both sides, then averaged over as many, so
-/// that none becomes lower than before.
+/// Each number becomes the largest of itself and of `spread` neighbours before and after it; then all are
+/// averaged over the same neighbours. None becomes lower than before.
 fn smoothed(numbers: &[f64], spread: usize, is_loop: bool) -> Vec<f64> {
     let count = numbers.len() as isize;
     let near = |all: &[f64], k: isize, d: isize| {
@@ -244,7 +248,8 @@ fn smoothed(numbers: &[f64], spread: usize, is_loop: bool) -> Vec<f64> {
     (0..count).map(mean).collect()
 }
 
-/// Value at a position between numbers, linearly interpolated.
+/// Value at the position `place` among numbers, linearly interpolated; in a loop the first number follows the
+/// last.
 fn between(numbers: &[f64], place: f64, is_loop: bool) -> f64 {
     let last = numbers.len() - 1;
     let low = (place.floor() as usize).min(last);

@@ -10,12 +10,13 @@ use toile_geometry::Vec3;
 pub struct Clip {
     /// Time from one pose to the next (s).
     pub step: f64,
-    /// The poses; the root's position is over the leg length (1).
+    /// The poses; the shift of the root is divided by the leg length (1).
     pub poses: Vec<Pose>,
     /// Whether the first pose follows the last one.
     pub is_loop: bool,
-    /// Distance over the ground in one round of a loop on the spot, over the leg length (1): when the figure
-    /// is moved by this distance, the standing foot stands still. Zero if the poses themselves move the root.
+    /// Distance over the ground in one round of a loop on the spot, divided by the leg length (1): when the
+    /// figure is moved by this distance, the standing foot stands still. Zero if the poses themselves move
+    /// the root.
     pub advance: Vec3,
 }
 
@@ -29,8 +30,8 @@ impl Clip {
         self.step * gaps as f64
     }
 
-    /// The pose at a time (s), slerped between frames. Before the start and after the end it is held, unless
-    /// the clip is a loop. The root's position is over the leg length.
+    /// The pose at a time (s), slerped between frames. Before the start of a clip that is no loop it is the
+    /// first pose, after the end the last. The shift of the root is divided by the leg length.
     pub fn at(&self, time: f64) -> Pose {
         let count = self.poses.len();
         if count == 0 || !time.is_finite() || self.step <= 0.0 {
@@ -55,7 +56,7 @@ impl Clip {
         self.poses[low].blended(&self.poses[high], share)
     }
 
-    /// Distance over the ground from the start of a loop to a time (s), over the leg length (1).
+    /// Distance over the ground from the start of a loop to a time (s), divided by the leg length (1).
     pub fn travelled(&self, time: f64) -> Vec3 {
         match self.duration() {
             duration if duration > 0.0 => self.advance * (time / duration),

@@ -8,7 +8,7 @@ use toile_measure::{Measurements, Origin};
 pub struct Conflict {
     /// The measurements, by their names.
     pub names: Vec<&'static str>,
-    /// Size of the disagreement (m).
+    /// Size of the disagreement (m); of an angle (rad).
     pub gap: f64,
     /// Reason for the contradiction, and the change to make.
     pub why: &'static str,
@@ -18,8 +18,8 @@ pub struct Conflict {
 /// the share, and the message if it is less.
 type Rule = (&'static [(&'static str, f64)], f64, &'static str);
 
-/// Rules that follow from the meaning of the measurements and from the shapes of people. The straight length
-/// of the front is no longer than the way over the bust if no belly stands farther out and the front falls no
+/// Rules that follow from the meaning of the measurements and from the shapes of people. A straight tape down
+/// the front is no longer than the way over the bust, unless a belly stands farther out or the front falls
 /// flatter than 45 degrees below the bust. A length along the skin is at least its drop in height.
 const RULES: &[Rule] = &[
     (
@@ -183,11 +183,11 @@ const LOOPS: &[Loop] = &[
     ),
 ];
 
-/// Tolerance of an equality as a share of stature: the accuracy of the tape.
+/// Disagreement that is not reported, as a share of stature: the accuracy of the tape.
 const SLACK: f64 = 5e-4;
 
-/// Whether `name` is [`UNDER_BUST`] and contradicts other measurements: it is then ignored and does not
-/// determine the position of the bust.
+/// Whether `name` is [`UNDER_BUST`] and contradicts other measurements: it then has little weight and does
+/// not determine how far the bust stands out.
 pub(crate) fn gives_way(name: &str, conflicts: &[Conflict]) -> bool {
     let among = |c: &Conflict| c.names.contains(&UNDER_BUST);
     name == UNDER_BUST && conflicts.iter().any(among)
@@ -196,10 +196,10 @@ pub(crate) fn gives_way(name: &str, conflicts: &[Conflict]) -> bool {
 /// Measurement of the front that also passes over a belly.
 const OVER_BELLY: &str = "hps_to_waist_front";
 
-/// Measurement that is ignored if it contradicts others.
+/// Measurement that has little weight if it contradicts others.
 const UNDER_BUST: &str = "bust_to_underbust";
 
-/// Every rule that the requested measurements break.
+/// A conflict for every rule that the requested measurements break.
 pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
     let height = table.get("height").unwrap_or(1.7);
     // Only requested measurements can contradict each other.
@@ -211,7 +211,7 @@ pub(crate) fn conflicts(table: &Measurements) -> Vec<Conflict> {
     };
     let names = |terms: &[(&'static str, f64)]| terms.iter().map(|term| term.0).collect();
     let mut found = Vec::new();
-    // The straight length of the front is longer over a belly.
+    // Over a belly the straight length of the front may be longer than the way over the bust.
     let belly = table.get("waist") > table.get("underbust");
     let over_belly = |terms: &[(&str, f64)]| belly && terms.iter().any(|t| t.0 == OVER_BELLY);
     for &(terms, share, why) in RULES {

@@ -17,22 +17,24 @@ pub(crate) struct CutPlane {
     pub(crate) near: Near,
 }
 
-/// Largest difference in height between a plane and the first corner of a triangle that crosses it (m). `FAR`
-/// is for thighs and shoulders, where heights are moved as well.
+/// Largest difference in height between a plane and the first corner of a triangle that crosses it (m).
 const REACH: f64 = 0.04;
+/// The same at thighs, and at levels of the trunk given by lengths (m): there points of one height on the
+/// template get different heights on the body.
 const FAR: f64 = 0.08;
-/// `REACH` above the ears, where rows of the skin are no farther apart than this (m).
+/// The same round the head above the ears, where rows of the skin are no farther apart than this (m).
 const HEAD: f64 = 0.025;
-/// `REACH` square to a tape round the neck (m): round a thick neck the tape lies askew on the template.
+/// The same along the normal of a tape round the neck (m): on the template, a tape round a thick neck has
+/// another tilt.
 const NECK: f64 = 0.045;
 
-/// `REACH` along the arm for a tape across it (m): a tilted tape reaches farther than a ring.
+/// The same along the arm for a tape across it (m): such a tape may be tilted against the rings of the skin.
 const ARM: f64 = 0.04;
 
 /// Half the length over which the direction of an arm is computed from the centres of its sections (m).
 const ARM_WAY: f64 = 0.065;
 
-/// Middle of the template's arm at a distance from the shoulder joint (m).
+/// Centre of the section of the template's arm at a distance from the shoulder joint (m).
 fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
     let place = (distance / marks.arm.wrist - ARM_BEGINS) / ARM_STEP;
     let before = (place.floor().max(0.0) as usize).min(ARM_MIDDLES - 2);
@@ -41,7 +43,7 @@ fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
 }
 
 impl CutPlane {
-    /// The plane of a cut at a height, or a distance along an arm (m).
+    /// The plane of a cut at the position `place` (m), a height or a distance along the arm as [`Cut`] says.
     pub(crate) fn of(cut: Cut, place: f64, marks: &TemplateMarks, warp: &Warp) -> Self {
         match cut {
             Cut::Trunk => Self::level(Part::Trunk, place, warp.near(place, REACH)),

@@ -13,7 +13,7 @@ pub(crate) struct BodyMarks {
     pub(crate) armpit: f64,
     /// Height of the centre of the knee over the floor.
     pub(crate) knee: f64,
-    /// Distances of the armpit and of the finger tips along the arm.
+    /// Distances along the arm of the armpit and of the finger tips, from one starting point.
     pub(crate) arm: [f64; 2],
 }
 
@@ -32,7 +32,8 @@ pub(crate) enum Cut {
     Arm,
 }
 
-/// Rule for the girth among all sections in its range.
+/// The section that counts among all sections in the range of a girth: the one with the largest or with the
+/// smallest girth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     Largest,
@@ -47,43 +48,50 @@ pub(crate) struct Taping {
     choice: Choice,
 }
 
-/// Tilt of a tape round the neck, lower in front (rad): about square to the axis of the neck, so that the
-/// least girths of necks lie within 2 mm of it.
+/// Tilt of a tape round the neck, lower in front (rad): about square to the axis of the neck. A tape of this
+/// tilt takes the least girth of a neck to within 2 mm.
 pub(crate) const NECK_TILT: f64 = 20.0 * std::f64::consts::PI / 180.0;
-/// Largest distance of the tape from the middle of the neck, as a share of stature.
+/// Largest distance of the tape above or below the middle of the neck, as a share of stature.
 const NECK_REACH: f64 = 0.03;
 
-/// Heights as shares of the way from crotch to crown.
+/// Range of the height of the hips, as shares of the way from crotch to crown.
 const HIPS: [f64; 2] = [0.035, 0.11];
+/// Range of the height of the waist, as shares of the same way.
 const WAIST: [f64; 2] = [0.28, 0.35];
+/// Height of the girth under the bust, as a share of the same way.
 const UNDERBUST: f64 = 0.415;
+/// Range of the height of the bust, as shares of the same way.
 const BUST: [f64; 2] = [0.44, 0.50];
 /// Least depth of the bust below the armpits, as a share of stature.
 pub(crate) const BUST_DROP: f64 = 0.008;
 /// Depth below the crotch at which the thigh is taped, as a share of stature.
 pub(crate) const THIGH_DROP: f64 = 0.012;
-/// Height of the knee over the height of the crotch, if it is not given.
+/// Height of the knee as a share of the height of the crotch, if it is not given.
 pub(crate) const KNEE: f64 = 0.58;
-/// Height as a share of the way from knee to crotch.
+/// Height of the lower thigh's girth, as a share of the way from knee to crotch.
 const LOWER_THIGH: f64 = 0.15;
-/// Heights over the height of the knee.
+/// Range of the height of the calf, as shares of the height of the knee.
 const CALF: [f64; 2] = [0.55, 0.9];
+/// Largest height of the ankle's girth, as a share of the height of the knee.
 const ANKLE_MOST: f64 = 0.6;
-/// Least height of the ankle, and heights of the head's girth, as shares of stature.
+/// Smallest height of the ankle's girth, as a share of stature.
 const ANKLE_LEAST: f64 = 0.03;
+/// Range of the height of the head's girth, as shares of stature.
 const HEAD: [f64; 2] = [0.94, 0.97];
-/// Distances as shares of the way along the arm from the armpit to the finger tips.
+/// Range of the upper arm's girth, as shares of the way along the arm from the armpit to the finger tips.
 const UPPER_ARM: [f64; 2] = [0.15, 0.28];
+/// Range of the forearm's girth, as shares of the same way.
 const FOREARM: [f64; 2] = [0.38, 0.60];
+/// Range of the wrist's girth, as shares of the same way.
 const WRIST: [f64; 2] = [0.60, 0.78];
 
-/// Number of even steps in which a range is searched first, and number of narrowings round the best one by
-/// the golden section (Kiefer 1953).
+/// Number of even steps in which a range is searched first.
 const STEPS: usize = 8;
+/// Number of times that the range round the best step is then narrowed by the golden section (Kiefer 1953).
 const NARROWINGS: usize = 5;
 
-/// Range of heights of a girth round the trunk, from the heights of crotch and crown (m); `None` where
-/// lengths alone give its level.
+/// Range of heights in which a girth round the trunk is searched for, from the heights of crotch and crown
+/// (m); `None` if lengths alone give the level of the girth.
 pub(crate) fn trunk_range(girth: Girth, [crotch, crown]: [f64; 2]) -> Option<[f64; 2]> {
     let shares = match girth {
         Girth::Hips => HIPS,
@@ -135,8 +143,8 @@ impl Taping {
         Some(Self { cut, range, choice })
     }
 
-    /// Position of the girth (m), from the readings of a tape at each position; `None` if the body has no
-    /// section in the range.
+    /// Position of the girth (m); `around` takes the girth at a position. `None` if the body has no section
+    /// in the range.
     pub(crate) fn find(&self, around: impl Fn(f64) -> Option<f64>) -> Option<f64> {
         let [low, high] = self.range;
         if high <= low {

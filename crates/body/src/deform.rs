@@ -29,7 +29,7 @@ pub struct DeformationKey {
     /// Shift of the centre, in the frame of the joint that the primitive is fixed to (m).
     #[serde(default)]
     pub shift: [f64; 3],
-    /// Semi-axes over those at rest (1).
+    /// Semi-axes divided by those at rest (1).
     #[serde(default = "as_they_are")]
     pub stretch: [f64; 3],
     /// Turn relative to the rest pose, as axis times angle (rad).
@@ -60,7 +60,7 @@ impl Deformation {
             .unwrap_or_default()
     }
 
-    /// A primitive at an angle of the reference joint (rad).
+    /// A primitive as it is changed at an angle of the reference joint (rad).
     pub fn at(&self, primitive: &Primitive, angle: f64) -> Primitive {
         let (shift, stretch, turn) = self.between(angle);
         let rotation = match turn == UnitQuaternion::identity() {

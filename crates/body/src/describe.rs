@@ -21,7 +21,7 @@ pub struct Description {
     /// primitives.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub primitives: Vec<Primitive>,
-    /// Levels and joints of a body that was fitted to a mesh and is used as its primitives describe it;
+    /// Levels and joints of a body whose primitives are used unchanged, such as a body fitted to a mesh;
     /// `None` for a body grown from the figure's template to its measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<BodyFrame>,

@@ -94,8 +94,8 @@ impl Mannequin {
             .collect()
     }
 
-    /// Contradictions among the requested measurements: broken rules of any body, and measurements that the
-    /// solved body misses by more than a millimetre on an adult.
+    /// Contradictions among the requested measurements: those that break a rule for any body, and those that
+    /// the solved body misses by more than a millimetre at the size of an adult, or by 0.02 rad.
     pub fn conflicts(&self) -> Vec<Conflict> {
         let mut found = self.request.conflicts.clone();
         let height = self.request.get("height");

@@ -13,15 +13,15 @@ pub(crate) struct DressForm {
     pub(crate) top: f64,
 }
 
-/// Largest distance from the plane of the neck's end at which a vertex counts as in the plane, as a share of
-/// stature.
+/// Largest distance from the plane that cuts off the neck or an arm at which a vertex counts as in the plane,
+/// as a share of stature.
 const IN_PLANE: f64 = 3e-4;
 /// Height by which plates over neck and armholes bulge, as a share of stature.
 const BULGE: f64 = 0.006;
 /// Rings of a plate: shares of the distance from its centre to its border.
 const PLATE: [f64; 3] = [0.85, 0.6, 0.3];
-/// Rings below the hips: depth under the lowest point of the border, as a share of stature, and share of the
-/// border's distance from its centre.
+/// Rings that continue the trunk's open lower border: depth of a ring under the lowest point of the border,
+/// as a share of stature, and size of the ring as a share of that of the border.
 const SKIRT: [[f64; 2]; 6] = [
     [0.015, 1.0],
     [0.03, 0.995],
@@ -48,8 +48,9 @@ fn own(skin: &TriangleMesh, parts: &[Part], part: Part) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The plane in which the left arm ends, by a point and its outward normal: parallel to the line through the
-/// highest and the lowest point where arm and trunk meet, and outside all of these points.
+/// The plane that cuts off the left arm, by a point and its outward normal. It is parallel to the line
+/// through the highest and the lowest point where arm and trunk meet, and no point where they meet lies
+/// beyond it.
 fn armhole(skin: &TriangleMesh, parts: &[Part]) -> [Vec3; 2] {
     let corners = |part: Part| -> BTreeSet<u32> {
         let own = own(skin, parts, part);
@@ -107,8 +108,9 @@ impl DressForm {
         form
     }
 
-    /// Keeps the triangles of a part, or the part of them below a plane given by a point and a normal.
-    /// Vertices nearer to the plane than a distance (m) count as in it.
+    /// Adds the triangles of a part of the skin to the form. With an `end`, only the side of the skin below a
+    /// plane is added; `end` gives a point and the normal of the plane, and the distance within which
+    /// vertices count as in it (m).
     fn keep(
         &mut self,
         (skin, parts): (&TriangleMesh, &[Part]),
@@ -121,7 +123,7 @@ impl DressForm {
             Some(if height.abs() < near { 0.0 } else { height })
         };
         let above = |v: u32| above(v).unwrap_or(-1.0);
-        // The root of an arm becomes the form's shoulder.
+        // The root of an arm becomes the shoulder of the form and counts as trunk.
         let kept = match part {
             Part::Head => Part::Head,
             _ => Part::Trunk,
@@ -252,7 +254,7 @@ impl DressForm {
         self.close(&ring, Vec3::new(middle.x, 0.0, middle.z), Part::Trunk);
     }
 
-    /// Removes vertices of no triangle.
+    /// Removes vertices that belong to no triangle.
     fn without_strays(&mut self) {
         let mut number = vec![u32::MAX; self.mesh.positions.len()];
         let mut positions = Vec::new();

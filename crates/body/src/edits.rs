@@ -1,5 +1,6 @@
 //! Edits of the primitives of a body, as data (the primitive editor of Volino, Magnenat-Thalmann, Shen,
-//! Thalmann 1996). Values are absolute; an edit is undone by keeping the description from before.
+//! Thalmann 1996). Values are absolute, not changes. To undo an edit, the description from before it is used
+//! again.
 
 use crate::deform::Deformation;
 use crate::describe::check;

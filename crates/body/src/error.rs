@@ -3,7 +3,7 @@
 /// Reason why a mannequin could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BodyError {
-    /// A value that no body has.
+    /// A measurement lies outside the range of values that bodies have.
     #[error("measurement {name} is {value}: give a value from {low} to {high} ({unit})")]
     OutOfRange {
         /// The measurement.
@@ -35,7 +35,7 @@ pub enum BodyError {
         /// The primitive, counted from 0.
         primitive: usize,
     },
-    /// The primitives leave a hole where the skin should be.
+    /// The primitives of a part do not enclose its axis, so that its skin would have a hole there.
     #[error("the primitives of the {part} do not enclose its axis near ({x:.3}, {y:.3}, {z:.3}) m")]
     Open {
         /// Name of the body part.
@@ -47,18 +47,20 @@ pub enum BodyError {
         /// z of the place on the axis (m).
         z: f64,
     },
-    /// Landmarks of the skin that are not in the order from floor to crown that bodies have.
+    /// Primitives were moved or deleted so that landmarks of the skin are out of order along the body or an
+    /// arm.
     #[error(
         "the landmarks of the skin lie out of order at {level:.3} m on its template: give the primitives there back their places"
     )]
     Disordered {
-        /// Height, or distance along the arm (m).
+        /// Height, or distance along the arm, of a landmark that is out of order (m).
         level: f64,
     },
-    /// A mesh that cannot be measured as a body.
+    /// A mesh that cannot be measured as a body; the text names the fault.
     #[error("the mesh {0}")]
     Mesh(String),
-    /// A file of another version or with damaged values.
+    /// A description of a mannequin, or an edit of one, with values that no body can have; the text names the
+    /// fault.
     #[error("mannequin description: {0}")]
     Description(String),
 }

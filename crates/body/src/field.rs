@@ -297,7 +297,7 @@ impl Field {
             .any(|&part| self.density(part, point) >= THRESHOLD)
     }
 
-    /// Distance (m) from `origin` along the unit vector `direction` to the first point where the ray leaves
+    /// Distance (m) from `origin` along the unit vector `direction` to the first point where this ray leaves
     /// the union of some parts, to 1e-9 m. `None` if `origin` is outside or the distance is more than 0.6 m.
     pub fn first_exit(&self, parts: &[Part], origin: Vec3, direction: Vec3) -> Option<f64> {
         /// Larger than the thickness of any limb and half of any trunk (m).
@@ -313,8 +313,9 @@ impl Field {
         (distance > 0.0).then(|| along.exit([distance - STEP, distance]))
     }
 
-    /// Distance (m) along a ray to the last point where it leaves one part within `reach` (m), to 1e-9 m:
-    /// hollows inside are passed over. `None` if the ray does not meet the part.
+    /// Distance (m) along a ray, given by its origin and unit direction, to the last point where it leaves
+    /// one part within `reach` (m), to 1e-9 m: hollows inside are passed over. `None` if the ray does not
+    /// meet the part.
     pub fn last_exit(&self, part: Part, ray: [Vec3; 2], reach: f64) -> Option<f64> {
         let along = self.along(&[part], ray);
         let count = (reach / STEP).ceil() as usize;
@@ -347,8 +348,8 @@ impl Field {
 }
 
 impl Density {
-    /// Coefficients of q along a line as a quadratic in the distance, and the weight; `None` if the line
-    /// misses the primitive.
+    /// Coefficients of q (see [`Primitive`]) along a line, as a quadratic in the distance, and the weight;
+    /// `None` if the line misses the primitive.
     fn along(&self, [origin, direction]: [Vec3; 2]) -> Option<[f64; 4]> {
         let offset = origin - self.centre;
         let towards = offset.dot(&direction);
@@ -372,14 +373,14 @@ impl Density {
 /// Densities along a ray: on a straight line the q of each primitive is a quadratic in the distance t, `q = a
 /// t^2 + b t + c`.
 struct Along {
-    /// a, b, c and the weight of the primitives that the line meets, sum after sum.
+    /// a, b, c and the weight of each primitive that the line meets, group after group.
     rows: Vec<[f64; 4]>,
-    /// Ends in `rows` of the groups whose densities add up.
+    /// Ends of the groups in `rows`: the densities of one group add up.
     ends: Vec<usize>,
 }
 
 impl Along {
-    /// The largest sum of densities (1) and its slope along the ray (1/m).
+    /// The largest sum of densities of a group at the distance `t` (1), and its slope along the ray (1/m).
     fn strongest(&self, t: f64) -> [f64; 2] {
         let mut best = [0.0, 0.0];
         let mut from = 0;
@@ -437,5 +438,6 @@ impl Along {
     }
 }
 
-/// Step of a march along a ray (m): thinner gaps are not seen.
+/// Distance between the points of a ray that are tested for lying inside (m): thinner parts and gaps can be
+/// missed.
 const STEP: f64 = 0.004;

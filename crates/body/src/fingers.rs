@@ -2,14 +2,15 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Angle from the centre line of the back or the palm of the hand to the outer grooves (rad).
+/// Angle about the middle of the hand from the centre line of the back or of the palm to the outer grooves
+/// between fingers (rad).
 const GROOVE: f64 = 44.0 * PI / 180.0;
 /// Columns from one groove to the next.
 const COLUMNS: usize = 3;
 
-/// Even angles moved by a share towards angles at which every third column near the centre lines of back and
-/// palm lies in a groove between fingers. The centre line of the back is at angle 0, that of the palm at half
-/// a turn.
+/// Even angles, moved by a share (0 to 1) of the way to other angles, at which every third column near the
+/// centre lines of back and palm lies in a groove between fingers. The centre line of the back is at angle 0,
+/// that of the palm at half a turn.
 pub(crate) fn gathered(even: &[f64], share: f64) -> Vec<f64> {
     let n = even.len();
     if share <= 0.0 || n < 6 * COLUMNS {

@@ -35,9 +35,10 @@ pub struct Fit {
 
 impl Scan {
     /// Fits a mannequin. Joints come from the sections of the limbs. About 150 primitives are fitted by least
-    /// squares of their densities on the surface, and again five times, corrected by the distances of the
-    /// cast skin from the surface and of its girths from level tapes round the mesh; the best fit is kept.
-    /// The mesh is taken as symmetric: both halves count for the fitted one.
+    /// squares so that their density on the mesh is the threshold. The fit is repeated five times: each time
+    /// a skin is cast from the primitives, and its distances from the mesh and the differences of its girths
+    /// from those of the mesh correct the next fit. The best fit is kept. The mesh is taken as symmetric: the
+    /// left half of the body is fitted to both halves of the mesh.
     ///
     /// # Errors
     /// [`BodyError::Mesh`] for a landmark or a limb that cannot be found, with the landmark to give.
@@ -98,7 +99,8 @@ fn sound(
     }
 }
 
-/// Primitives of both sides, and distances of their skin from the mesh.
+/// Fits primitives, and the levels of `found` with them. Returns the primitives of both sides, and the
+/// distances of their skin from the mesh.
 fn fitted(scan: &Scan, found: &mut FoundFrame) -> Result<(Vec<Primitive>, FitMisfit), BodyError> {
     let own = Scan::new(template_skin(Figure::Woman)?, ScanLandmarks::default())?;
     let rows = start(scan, found, &own);
@@ -157,7 +159,8 @@ impl SearchedLevel {
     }
 }
 
-/// A skin cast on a frame, to be compared with the mesh.
+/// A skin cast from primitives with a frame, and the same skin as the scan `checked`, to compare it with the
+/// mesh.
 struct CandidateSkin {
     skin: TemplateSkin,
     checked: Scan,
@@ -179,17 +182,17 @@ impl CandidateSkin {
     }
 }
 
-/// Casts the skin. The levels of armpits and crotch are chosen one after the other so that the skin is
-/// nearest to the mesh at that level: between a thick arm and a full trunk, and between thighs that touch,
-/// only few levels can be cast.
+/// Casts the skin of primitives. The levels of armpits and crotch are chosen one after the other so that the
+/// skin near that level is nearest to the mesh: between a thick arm and a full trunk, and between thighs that
+/// touch, only few levels can be cast.
 fn cast_best(
     scan: &Scan,
     found: &mut FoundFrame,
     primitives: &[Primitive],
 ) -> Result<(TemplateSkin, Scan), BodyError> {
-    /// Steps tried for a level, smallest first, and distance to both sides within which the mesh is compared,
-    /// as a share of stature.
+    /// Shifts of a level that are tried, smallest first, as shares of stature.
     const ELSEWHERE: [f64; 6] = [-0.003, 0.003, -0.006, 0.006, -0.01, 0.01];
+    /// Distance above and below a level within which skin and mesh are compared, as a share of stature.
     const ROUND: f64 = 0.035;
     let height = found.frame.height;
     let mut best = CandidateSkin::new(scan, found.frame, primitives);
@@ -221,7 +224,7 @@ fn cast_best(
 /// rounds.
 const ROUNDS: usize = 5;
 
-/// Distance of the skin from a sample of the surface.
+/// Distance of the skin from a sample of the mesh.
 struct SurfaceMiss {
     place: Vec3,
     normal: Vec3,

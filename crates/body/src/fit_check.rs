@@ -42,7 +42,7 @@ pub enum LevelPart {
     Arm,
 }
 
-/// Distances between two level sections.
+/// Differences between the level sections of a mesh and of the skin fitted to it, at one height.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LevelMisfit {
     /// Height of the section (m).
@@ -56,7 +56,7 @@ pub struct LevelMisfit {
     /// Girth of the fitted skin minus girth of the mesh (m).
     #[serde(rename = "gap_m")]
     pub gap: f64,
-    /// Root mean square of the distance along rays (m).
+    /// Root mean square of the distance along rays from the section's centre (m).
     #[serde(rename = "radial_rms_m")]
     pub radial: f64,
 }
@@ -75,7 +75,7 @@ impl FitMisfit {
     }
 }
 
-/// Compares two bodies on the levels between two heights (m).
+/// Compares a skin with the mesh that it was fitted to, on the levels between two heights (m).
 pub(crate) fn misfit(
     mesh: &Scan,
     skin: &Scan,
@@ -150,7 +150,7 @@ pub(crate) fn pairs(
         return vec![(LevelPart::Trunk, loops)];
     }
     all.extend(both(Scan::trunk_of).map(|pair| (LevelPart::Trunk, pair)));
-    // Level sections of a slanting forearm reach over the wrist.
+    // Lower down, a level section of a slanting forearm reaches into the hand.
     if y > joints.wrist[1] + 0.02 * mesh.height() {
         all.extend(both(Scan::arm_of).map(|pair| (LevelPart::Arm, pair)));
     }
@@ -183,7 +183,7 @@ fn distances([mesh, skin]: &[Vec<Loop>; 2]) -> Vec<f64> {
         .collect()
 }
 
-/// Distance along a ray to its last crossing of a loop (m).
+/// Distance along a ray from `centre` to its last crossing of a loop (m).
 pub(crate) fn outermost(section: &Loop, centre: Vec2, ray: Vec2) -> Option<f64> {
     let points = &section.points;
     let mut best: Option<f64> = None;

@@ -12,9 +12,10 @@ use toile_geometry::Vec3;
 const STEPS: usize = 150;
 /// Residual, as a share of stature, above which samples count less (Huber 1964).
 const FAR: f64 = 0.004;
-/// Margins of the density from the threshold, inside and outside the surface.
+/// Least difference between the density and the threshold at samples inside, and at samples outside the
+/// surface (1).
 const ROOM: [f64; 2] = [0.05, 0.03];
-/// Limits of the weight of a primitive.
+/// Limits of the weight of a primitive (1).
 const WEIGHT: [f64; 2] = [0.3, 3.0];
 
 /// Samples and tapes that a part is fitted to.
@@ -72,7 +73,8 @@ pub(crate) fn fit(primitives: &mut [Primitive], goal: &Goal) {
     }
 }
 
-/// Takes a step, limited to the range in which the linear model can be trusted.
+/// Changes a primitive by a step of its unknowns, limited to the range in which the linear model can be
+/// trusted.
 fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
     let central = primitive.is_central();
     let far = 0.02 * height;
@@ -95,7 +97,7 @@ fn moved(primitive: &mut Primitive, step: &[f64], height: f64) {
     };
     let weight = primitive.weight * step[9].clamp(-0.3, 0.3).exp();
     primitive.weight = weight.clamp(WEIGHT[0], WEIGHT[1]);
-    // A primitive off the median plane stays off it: a pair whose halves met would become one.
+    // A primitive off the median plane stays off it: otherwise it and its mirror image could become one.
     if !central && matches!(primitive.part, Part::Trunk | Part::Head) {
         primitive.centre[0] = primitive.centre[0].max(0.004 * height);
     }
@@ -140,7 +142,8 @@ fn assembled(primitives: &[Primitive], start: &[Primitive], goal: &Goal) -> Syst
 }
 
 impl System {
-    /// Adds a residual (m). Its derivatives are those of the density divided by the slope.
+    /// Adds a residual `miss` (m). Its derivatives are those of the density, in `touched`, divided by the
+    /// slope `steep`. A residual larger than `far` counts less.
     fn add(&mut self, touched: &[Row], miss: f64, steep: f64, (weight, far): (f64, f64)) {
         let size = miss.abs();
         let (cost, factor) = match size <= far {

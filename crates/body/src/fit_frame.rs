@@ -10,15 +10,16 @@ pub(crate) struct FoundFrame {
     pub(crate) frame: BodyFrame,
     /// The tip of the left hand (m).
     pub(crate) finger_tip: Vec3,
-    /// Distance along the bone from the shoulder at which sections of the arm alone begin (m).
+    /// Distance from the shoulder joint along the upper arm at which the sections begin that contain only the
+    /// arm (m).
     pub(crate) arm_begins: f64,
     /// Height of the lower end of the face (m).
     pub(crate) chin: f64,
 }
 
-/// Least distance from crotch to armpits, as a share of stature, and least number of sections from wrist to
-/// shoulder.
+/// Least distance from crotch to armpits, as a share of stature.
 const MIN_TRUNK: f64 = 0.1;
+/// Least number of sections from wrist to shoulder.
 const MIN_ARM: usize = 4;
 
 /// Height of the shoulder joint over the armpit, as a share of stature.
@@ -115,7 +116,7 @@ fn nearest(rings: &[Ring], p: Vec3) -> usize {
         .unwrap_or_default()
 }
 
-/// The wrist: the thinnest section about a hand's length from the tip.
+/// Index of the wrist's section: the thinnest about a hand's length from the tip.
 fn wrist_ring(rings: &[Ring], height: f64) -> usize {
     let tip = rings[0].0;
     let window = |k: &usize| (0.085..0.15).contains(&((rings[*k].0 - tip).norm() / height));
@@ -125,8 +126,8 @@ fn wrist_ring(rings: &[Ring], height: f64) -> usize {
         .unwrap_or(8.min(rings.len() - 1))
 }
 
-/// The elbow: the ring for which two straight bones fit the centres of the rings best; near the middle of a
-/// straight arm.
+/// Index of the elbow's section: the one for which two straight bones fit the centres of the sections best;
+/// near the middle of a straight arm.
 fn elbow_ring(rings: &[Ring], wrist: usize) -> usize {
     let last = rings.len() - 1;
     let span = last - wrist;

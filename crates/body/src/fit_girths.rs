@@ -14,10 +14,10 @@ use toile_geometry::{Vec2, Vec3, convex_hull};
 
 /// The residual of one tape, from the corners of the hull that lie on one part.
 pub(crate) struct GirthResidual {
-    /// Corners of the mesh's hull, folded to the left (m), and the angle that the hull turns by at each
-    /// (rad).
+    /// Corners of the mesh's hull, mirrored to the left side (m), and the angle that the hull turns by at
+    /// each (rad).
     pub(crate) corners: Vec<(Vec3, f64)>,
-    /// Wanted lengthening of the tape by the moves of the surface off the corners (m).
+    /// Length by which a tape round the primitives' surface should exceed one through the corners (m).
     pub(crate) target: f64,
     /// Weight of the residual in the sum of squares (m2).
     pub(crate) weight: f64,
@@ -26,16 +26,16 @@ pub(crate) struct GirthResidual {
 /// Distance between tapes, as a share of stature. The tapes lie half-way between the levels at which a fit is
 /// judged.
 const SPACING: f64 = 0.005;
-/// Weight of the mean misfit of a section, which its girth shows, over the weight of the misfit of single
-/// samples (1); multiplied by the number of the round.
+/// Weight of the residual of a tape over that of single samples (1), before it is multiplied by the number of
+/// the round: a girth shows the mean misfit of a whole section.
 const STRESS: f64 = 8.0;
-/// Corners of a hull are merged up to this turn (rad).
+/// Neighbouring corners of a hull are merged until the hull turns by this angle at them together (rad).
 const TURN: f64 = TAU / 64.0;
-/// Largest change asked of a tape at a time, as a share of stature.
+/// Largest change of a girth that is asked for in one round, as a share of stature.
 const FAR: f64 = 0.012;
 
-/// The tapes of each of [`PARTS`]: the difference in girth between a skin cast from primitives and the mesh,
-/// as moves of the primitives' surface. Girths get more weight from round to round.
+/// The girth residuals of each of [`PARTS`]: the moves of the primitives' surface by which the girth of the
+/// skin cast from them would become that of the mesh. Girths get more weight from round to round.
 pub(crate) fn girths(
     [mesh, skin]: [&Scan; 2],
     found: &FoundFrame,
@@ -86,7 +86,8 @@ pub(crate) fn girths(
     all
 }
 
-/// Corners of the hull of a section's loops, near ones merged, with the angle that the hull turns by.
+/// Corners of the hull of a section's loops (m), near ones merged, with the angle that the hull turns by at
+/// each (rad).
 fn corners(loops: &[Loop], y: f64) -> Vec<(Vec3, f64)> {
     let points: Vec<Vec2> = loops.iter().flat_map(|l| &l.points).copied().collect();
     let hull = convex_hull(&points);

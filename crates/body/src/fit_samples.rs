@@ -36,7 +36,8 @@ pub(crate) struct Sample {
     pub(crate) weight: f64,
 }
 
-/// A point of the surface, folded to the left half.
+/// A point of the mesh, its outward normal and the area that it stands for (m2); points of the right half are
+/// mirrored to the left.
 struct Spot {
     place: Vec3,
     normal: Vec3,
@@ -78,7 +79,8 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
                     normal: spot.normal,
                     own: spot.place,
                 };
-                // On a slope, the distance in a level section is larger than the distance along the normal.
+                // The skin is compared in level sections, where a misfit on a slope is larger than along the
+                // normal: spots on slopes get more weight.
                 let level = spot.normal.x.hypot(spot.normal.z);
                 let seen = match part {
                     Part::Trunk => 1.0 / (0.2 + level * level),
@@ -87,7 +89,7 @@ pub(crate) fn samples(scan: &Scan, tree: &SurfaceTree, found: &FoundFrame) -> [V
                 add(spot.place, surface, own * seen);
                 let [within, beyond] = DEPTH.map(|d| d * height);
                 let outer = spot.place + spot.normal * beyond;
-                // Keeps the inside free of hollows, as rays start there.
+                // Samples inside keep trunk and head free of hollows: rays that cast their skin start there.
                 let depths: &[f64] = match part {
                     Part::Trunk | Part::Head => &[1.0, 2.5, 4.0],
                     _ => &[1.0],
@@ -163,7 +165,7 @@ fn head_spots(
     all
 }
 
-/// The centre of every triangle, folded to the left, and whether it belongs to an arm.
+/// The centre of every triangle, mirrored to the left half, and whether it belongs to an arm.
 fn spots(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<Spot> {
     let is_arm = arms(mesh, found);
     let normals = mesh.face_normals();
@@ -185,7 +187,7 @@ fn spots(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<Spot> {
 }
 
 /// Whether each vertex belongs to an arm: it is connected with the finger tips and lies beyond the plane
-/// across the arm at which sections of the arm alone begin.
+/// across the arm at `arm_begins`.
 fn arms(mesh: &TriangleMesh, found: &FoundFrame) -> Vec<bool> {
     let j = &found.frame.joints;
     let shoulder = Vec3::from(j.shoulder);
@@ -241,11 +243,13 @@ fn thinned(spots: Vec<Spot>, found: &FoundFrame) -> Vec<Spot> {
     cells.into_values().collect()
 }
 
-/// The regions of the surface that belong to each part.
+/// Decides to which part a point of the mesh belongs.
 struct Zones<'a> {
     found: &'a FoundFrame,
+    /// Point from which the rays of the trunk's skin over the shoulder are cast (m).
     focus: Vec3,
-    /// Elevation of the ray over the shoulder (rad).
+    /// Angle above the horizontal, seen from `focus`, at which the opening for the arm ends over the shoulder
+    /// (rad).
     top: f64,
 }
 
@@ -263,8 +267,8 @@ impl<'a> Zones<'a> {
         }
     }
 
-    /// Signed distance of a point from the border of the opening for the arm in the trunk's rays, divided by
-    /// its margin: above 1 well inside the opening, below 0 well outside.
+    /// Angle by which a point, seen from `focus`, lies inside the opening for the arm in the trunk's skin,
+    /// divided by a margin, plus one half: above 1 well inside the opening, below 0 well outside.
     fn opening(&self, p: Vec3) -> f64 {
         let offset = p - self.focus;
         let azimuth = (offset.x.atan2(offset.z) - std::f64::consts::FRAC_PI_2).abs();
@@ -277,8 +281,8 @@ impl<'a> Zones<'a> {
         sides.min(above).min(below) + 0.5
     }
 
-    /// Weight of a spot as a point of the part's own surface, and weight as a point of another part's
-    /// surface.
+    /// Weight of a spot as a point of the surface of `part`, and weight as a point of the surface of another
+    /// part.
     fn shares(&self, part: Part, spot: &Spot) -> [f64; 2] {
         let f = &self.found.frame;
         let (p, h) = (spot.place, f.height);
@@ -332,7 +336,7 @@ impl<'a> Zones<'a> {
         }
     }
 
-    /// Points of a part's axis, from which its skin is cast: inside by a margin.
+    /// Samples along a part's axis, from which its skin is cast: they must lie inside the part by a margin.
     fn axis(&self, part: Part) -> Vec<Sample> {
         let f = &self.found.frame;
         let j = &f.joints;

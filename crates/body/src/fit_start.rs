@@ -67,7 +67,8 @@ impl Side<'_> {
     }
 }
 
-/// The primitives of the left side and the median plane of the woman's figure, carried to a mesh.
+/// Primitives of the left side and the median plane to start from: those of the woman's figure carried to a
+/// mesh, and new ones for hand and leg. `own` is the skin of the woman's figure.
 pub(crate) fn start(scan: &Scan, found: &FoundFrame, own: &Scan) -> Vec<Primitive> {
     let template = Template::of(Figure::Woman);
     let frame = BodyFrame {

@@ -4,10 +4,11 @@ use crate::{Part, Primitive, THRESHOLD};
 use nalgebra::Matrix3;
 use toile_geometry::Vec3;
 
-/// Unknowns of a primitive: centre, logarithms of the semi-axes, turn, logarithm of the weight.
+/// Number of unknowns of a primitive: centre, logarithms of the semi-axes, turn, logarithm of the weight.
 pub(crate) const UNKNOWNS: usize = 10;
 
-/// A primitive ready for evaluation.
+/// A primitive ready for evaluation. `inverse` is 1 over each semi-axis (1/m), `reach` the square of the
+/// largest semi-axis (m2).
 struct Ready {
     centre: Vec3,
     turn: Matrix3<f64>,
@@ -40,8 +41,8 @@ fn ready(p: &Primitive) -> Ready {
     }
 }
 
-/// Density of a primitive at a point, with its gradient and its derivatives by the unknowns. The derivative
-/// by the centre is the negative gradient.
+/// Density of a primitive at a point, with its gradient and its derivatives by the unknowns; `None` if the
+/// density is 0 there. The derivative by the centre is the negative gradient.
 fn density(p: &Ready, place: Vec3) -> Option<(f64, Vec3, [f64; UNKNOWNS])> {
     let offset = place - p.centre;
     if offset.norm_squared() >= p.reach {
@@ -118,7 +119,8 @@ impl Surface {
     /// Distance in the level plane by which the surface lies outside a point, to first order (m), and the
     /// slope of the density in that plane (1/m).
     pub(crate) fn beyond(&self, place: Vec3, touched: &mut Vec<Row>) -> (f64, f64) {
-        /// Least share of the slope in the level plane: below it a surface counts as level.
+        /// Least slope in the level plane that is used, as a share of the whole slope: a nearly level surface
+        /// would otherwise seem to lie far away.
         const LEVEL: f64 = 0.15;
         let (value, gradient) = self.at(place, touched);
         let steep = gradient.x.hypot(gradient.z).max(LEVEL * gradient.norm());

@@ -7,7 +7,7 @@ use nalgebra::UnitQuaternion;
 use std::f64::consts::{PI, TAU};
 use toile_geometry::Vec3;
 
-/// Number of poses of a stride: a standing foot, slerped between two of them, then stays in place.
+/// Number of poses of a stride: so many that a standing foot stays in place although poses are slerped.
 const FRAMES: usize = 48;
 
 impl Clip {
@@ -145,11 +145,11 @@ impl ArmAngles {
 type Wave = [f64; 5];
 
 /// A gait: a foot stands still on the ground for a share of the stride and swings forward in the rest; arms
-/// and trunk follow waves. Lengths are over the leg length; the right side is half a stride later.
+/// and trunk follow waves. Lengths are divided by the leg length; the right side is half a stride later.
 struct Gait {
     /// Duration of the stride (s).
     duration: f64,
-    /// Speed over the ground (1/s).
+    /// Speed over the ground, in leg lengths (1/s).
     speed: f64,
     /// Share of the stride in which a foot is on the ground.
     duty: f64,
@@ -168,11 +168,13 @@ struct Gait {
     apart: f64,
     /// Half the rise and fall of the hips in a step, and the phase of their first lowest position.
     bounce: [f64; 2],
-    /// Angles of elbow and shoulder, forward.
+    /// Bend of the elbow (rad).
     elbow: Wave,
+    /// Swing of the arm forward at the shoulder (rad).
     shoulder: Wave,
-    /// Turn of the pelvis against the chest, and forward lean (rad).
+    /// Largest turn of the pelvis to one side (rad); the chest turns to the other.
     twist: f64,
+    /// Forward lean of the trunk (rad).
     lean: f64,
 }
 
@@ -219,7 +221,7 @@ fn wave(w: &Wave, phase: f64) -> f64 {
 }
 
 impl Gait {
-    /// Rise of the root over its mean height, over the leg length.
+    /// Rise of the root over its mean height, divided by the leg length (1).
     fn bob(&self, phase: f64) -> f64 {
         let [half, lowest] = self.bounce;
         -half * (2.0 * TAU * (phase - lowest)).cos()

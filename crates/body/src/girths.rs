@@ -54,7 +54,7 @@ impl Girth {
         }
     }
 
-    /// The level whose scale is set by a girth round the trunk.
+    /// The level whose scale is set by a girth round the trunk; `None` for other girths.
     pub(crate) fn level(self) -> Option<Level> {
         match self {
             Girth::HighBust => Some(Level::HighBust),

@@ -11,11 +11,12 @@ use toile_geometry::Vec3;
 
 /// Distance between rings of the hand and of the thumb, for a stature of 1.7 m (m).
 const SPACING: [f64; 2] = [0.0075, 0.0055];
-/// Length of the first axis of a flat hand's rings over the second (1), and share of the hand's length over
-/// which the rings get from round at the wrist to flat.
+/// Length of the first axis of a flat hand's rings, divided by that of the second (1).
 const FLAT: f64 = 0.45;
+/// Share of the hand's length over which the rings change from round at the wrist to flat (1).
 const FLATTENED: f64 = 0.45;
-/// Largest extent of the fingers, over the distance to the thumb's axis, that counts as clear of the thumb.
+/// Share of the way from the centre of a ring to the thumb's axis (1): the thumb counts as clear if all rays
+/// towards it leave the hand within this share.
 const CLEAR: f64 = 0.85;
 /// Positions of the last ring planes, as shares of the way from the last full ring to the tip.
 const TIP: [f64; 2] = [0.45, 0.8];
@@ -36,7 +37,8 @@ impl Half<'_> {
             let at = length * k as f64 / count as f64;
             let axes = [Vec3::z().cross(&along), Vec3::z()];
             let mut centre = wrist + along * at + offset;
-            // Between wrist and web the thumb does not count in the breadth.
+            // From the wrist to the web the thumb is part of the palm: rings are not centred in breadth
+            // there.
             let passes: &[Vec3] = match at > web {
                 true => &[axes[1], axes[0], axes[1], axes[0]],
                 false => &[axes[0]],
@@ -101,8 +103,8 @@ impl Half<'_> {
             self.thumb(&web, thumb)?;
             web.extend(first..first + web.len() as u32);
         }
-        // The hand has no small bumps to smooth except where thumb and fingers part; the rings at the wrist
-        // are a transition.
+        // Fairing leaves the hand as it is, except where thumb and fingers part. The first two rings at the
+        // wrist are a transition and are faired.
         let from = rings.get(wrist + 2).and_then(|ring| ring.iter().min());
         let from = from.map_or(first, |&v| v as usize);
         self.held[from..].fill(true);
@@ -182,7 +184,8 @@ impl Half<'_> {
     }
 }
 
-/// Ring number of the thumb's border: so high that all rings of the thumb follow only the arm's own joints.
+/// Ring number of the thumb's border: so high that the rings of the thumb follow only the arm and not the
+/// trunk.
 const HELD: f64 = 100.0;
 
 /// Intersection of a line with the plane of a ring square to `along`.

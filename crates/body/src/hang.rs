@@ -2,7 +2,7 @@
 
 use toile_geometry::Vec3;
 
-/// Steepest angle below the horizontal (rad).
+/// Steepest angle below the horizontal at which the arms of any body hang (rad).
 pub(crate) const STEEPEST: f64 = 1.15;
 /// Least distance between arm and trunk, as a share of stature: arms swing and trunks turn.
 const CLEAR: f64 = 0.012;

@@ -111,6 +111,8 @@ impl Landmarks {
 fn chin(mut outline: Vec<Vec3>, [base, crown]: [f64; 2]) -> Vec3 {
     /// Share of the way from the neck's base to the crown at which the mouth begins.
     const MOUTH: f64 = 0.3;
+    /// Share of the way forward from the throat to the foremost point of the chin at which its underside
+    /// lies.
     const FORWARD: f64 = 0.75;
     outline.retain(|p| p.y < base + MOUTH * (crown - base));
     outline.sort_by(|a, b| a.y.total_cmp(&b.y));

@@ -6,7 +6,7 @@ use toile_geometry::Vec3;
 /// Largest speed of the skin of trunk, arms and legs (m/s); hands, feet and head, which carry no garment, may
 /// be faster.
 const FASTEST_SKIN: f64 = 1.0;
-/// Shortest duration (s).
+/// Shortest duration of the motion (s).
 const SHORTEST: f64 = 0.4;
 /// Number of poses per second (1/s).
 const RATE: f64 = 240.0;
@@ -20,8 +20,8 @@ pub(crate) fn least_jerk(share: f64) -> f64 {
 
 impl Clip {
     /// The motion from one pose to another, each joint turning the short way with the least jerk, in 0.4 s,
-    /// or longer if otherwise any skin except that of hands, feet and head moved faster than 1 m/s. Roots are
-    /// in leg lengths.
+    /// or longer if otherwise any skin except that of hands, feet and head moved faster than 1 m/s. Shifts of
+    /// the root are in leg lengths.
     pub fn lead_in(body: &Mannequin, from: &Pose, to: &Pose) -> Self {
         let skeleton = body.skeleton();
         let skin_at = |share: f64| {

@@ -48,7 +48,7 @@ pub(crate) fn stand(skeleton: &Skeleton, pose: &mut Pose, leg: [Joint; 4], foot:
     let bend = knee_angle(thigh, shank, to.norm());
     let about = |axis: Vec3, angle: f64| UnitQuaternion::new(axis * angle);
     let reached = thigh + about(Vec3::x(), bend) * shank;
-    // First a turn about x that meets the third coordinate, then a sideways turn about z.
+    // First a turn about x that gives the ankle its depth (z), then a sideways turn about z.
     let across = reached.y.hypot(reached.z);
     let swing = (to.z / across).clamp(-1.0, 1.0).asin() - (reached.z / across).asin();
     // The leg points down: a turn forward about x is negative.

@@ -16,7 +16,8 @@ use Level::{
 
 const COUNT: usize = 13;
 
-/// Heights above the floor (m), and whether the waist is smaller than the girth under the bust.
+/// Heights of the landmarks above the floor (m), and whether the waist is smaller than the girth under the
+/// bust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Levels {
     heights: [f64; COUNT],
@@ -90,8 +91,8 @@ const UPRIGHT: [(&str, Level, Option<Level>); 20] = [
     ("waist_to_knee", Waist, Some(Knee)),
 ];
 
-/// Lengths over the body: name, upper and lower landmark, and the upright lengths that determine the level
-/// instead if they are requested.
+/// Lengths over the body: name, upper and lower landmark (`None` is the floor), and other lengths. If one of
+/// these others is requested, it determines the level instead.
 pub(crate) const OVER: [(&str, Level, Option<Level>, &[&str]); 6] = [
     (
         "bust_line",
@@ -121,7 +122,7 @@ pub(crate) fn upright() -> impl Iterator<Item = (&'static str, Level, Option<Lev
     UPRIGHT.into_iter()
 }
 
-/// Least squares of all lengths, weighted by the certainty of each.
+/// Normal equations of the least squares of all lengths, each weighted by its certainty.
 struct System {
     normal: SMatrix<f64, COUNT, COUNT>,
     right: SVector<f64, COUNT>,
@@ -139,12 +140,15 @@ impl System {
     }
 }
 
-/// Standard deviations as a share of stature: of a requested upright length, a requested length over the
-/// body, a prediction, a proportion of the template, and a definition.
+/// Standard deviation of a requested upright length, as a share of stature.
 const ASKED: f64 = 3e-5;
+/// Standard deviation of a requested length over the body, as a share of stature.
 const ASKED_OVER: f64 = 3e-4;
+/// Standard deviation of a predicted length, as a share of stature.
 const PREDICTED: f64 = 0.02;
+/// Standard deviation of a proportion of the template, as a share of stature.
 const PROPORTION: f64 = 0.008;
+/// Standard deviation of a level that is fixed by definition, as a share of stature.
 const DEFINED: f64 = 3e-4;
 /// Height of the neck's side below the nape, as a share of stature.
 const NECK_SIDE_DROP: f64 = 0.020;
@@ -218,7 +222,7 @@ pub(crate) fn solve(request: &Request, marks: &TemplateMarks, offsets: &SkinOffs
     }
 }
 
-/// Equations that hold for any body: definitions, then the template's proportions.
+/// Adds equations that hold for any body: definitions, then the template's proportions.
 fn proportions(
     system: &mut System,
     table: &Measurements,
@@ -274,7 +278,8 @@ fn proportions(
     }
 }
 
-/// Smallest distance of each landmark above the landmark before it in this list, as a share of stature.
+/// Smallest distance of each landmark above the landmark before it in this list, as a share of stature; of
+/// the first above the floor.
 const ROOM: [(Level, f64); 9] = [
     (Knee, 0.12),
     (Crotch, 0.10),

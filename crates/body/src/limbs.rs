@@ -17,7 +17,8 @@ pub(crate) enum Exit {
     Last,
 }
 
-/// The plane of a ring: rays leave `centre` towards `cos a * first + sin a * second`.
+/// The plane of a ring of a limb's skin. The vertices are cast by rays from `centre`; the ray at an angle a
+/// has the direction `cos a * first + sin a * second`.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame {
     pub(crate) centre: Vec3,
@@ -42,7 +43,8 @@ impl Frame {
     }
 }
 
-/// Even angles all round, as near as possible to the angles of the points of a border.
+/// One angle for each point of a border, evenly spaced all round, as near as possible to the angles of the
+/// points.
 fn even_angles(border: &[Vec3], frame: &Frame) -> Vec<f64> {
     let step = 2.0 * PI / border.len() as f64;
     // Mean of the differences to even angles, taken as directions, so that the mean has no jump at a full
@@ -67,6 +69,7 @@ pub(crate) struct Limb<'a> {
     pub(crate) border: &'a [u32],
     /// A point inside the body, behind the border.
     pub(crate) behind: Vec3,
+    /// Planes of the limb's rings, from the border to the tip.
     pub(crate) frames: Vec<Frame>,
     /// Direction from the last frame's centre to the tip.
     pub(crate) tip: Vec3,
@@ -293,7 +296,8 @@ impl Half<'_> {
         Frame { centre, ..frame }
     }
 
-    /// Closes the lowest half ring of the trunk, given from back to front, along the crotch.
+    /// Closes the lowest half ring of the trunk, given from back to front, by points along the crotch.
+    /// Returns the closed ring.
     fn crotch_line(&mut self, bottom: &[u32]) -> Result<Vec<u32>, BodyError> {
         let front = self.positions[bottom[bottom.len() - 1] as usize];
         let back = self.positions[bottom[0] as usize];
@@ -378,13 +382,14 @@ impl Half<'_> {
         Ok(rings)
     }
 
-    /// Point where a ray of a ring leaves the limb.
+    /// Point where the ray of a ring plane at an angle (rad) leaves the limb.
     fn outermost(&self, part: Part, frame: &Frame, angle: f64) -> Result<Vec3, BodyError> {
         /// Larger than the radius of any arm and any leg, but short of the next limb, for a stature of 1.7 m
         /// (m).
         const REACH: [f64; 2] = [0.11, 0.17];
         let (origin, direction) = (frame.centre, frame.direction(angle));
-        // In a field fitted to a mesh there are specks away from the limb, which are ignored.
+        // In a field fitted to a mesh, small separate pieces can lie beside the limb: the first exit does not
+        // reach them.
         if (self.template.armpit.is_some() || frame.exit == Exit::First)
             && let Some(distance) = self.field.first_exit(&[part], origin, direction)
         {

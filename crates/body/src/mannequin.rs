@@ -49,6 +49,7 @@ pub struct Mannequin {
     pub(crate) template_body: Arc<TemplateBody>,
     pub(crate) levels: Levels,
     pub(crate) warp: Warp,
+    /// Vertices of the median plane, of which the lowest is the crotch.
     pub(crate) crotch: Vec<u32>,
     pub(crate) skeleton: Skeleton,
     pub(crate) landmarks: Landmarks,
@@ -85,7 +86,7 @@ impl TemplateBody {
     }
 }
 
-/// Templates of the figures, cast when first used.
+/// Templates of woman, man and mean, cast when first used.
 static TEMPLATE_BODIES: [OnceLock<Result<Arc<TemplateBody>, BodyError>>; 3] =
     [const { OnceLock::new() }; 3];
 
@@ -385,7 +386,7 @@ fn hung(skeleton: Skeleton, mesh: &TriangleMesh, arm: &[f64]) -> Skeleton {
 }
 
 /// A primitive mapped by the warp: its visible axes are mapped, and the left singular vectors and the
-/// singular values of the result are the new axes.
+/// singular values of the result give the directions and the lengths of the new axes.
 fn carried(primitive: &Primitive, warp: &Warp) -> Primitive {
     let follow = match primitive.part {
         Part::LeftArm | Part::RightArm => Follow::ARM,

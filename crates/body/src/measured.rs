@@ -45,10 +45,13 @@ pub(crate) struct TapedSkin<'a> {
     hulls: RefCell<PerGirth<Option<Rc<[Vec2]>>>>,
     /// Cache of measured values by name.
     known: RefCell<Vec<(String, Option<f64>)>>,
+    /// Cache of the line round the crotch.
     around: OnceCell<Option<Around>>,
+    /// Cache of the left bust point (m).
     bust: OnceCell<Option<Vec3>>,
     /// Cache of girths round the trunk at the positions found for them.
     found: PerGirth<OnceCell<f64>>,
+    /// Cache of the upright section through the side of the neck.
     through_neck: OnceCell<Vec<[Vec3; 2]>>,
     /// Vertices of the left armpit from front to back.
     armpit: &'a [u32],
@@ -61,7 +64,7 @@ pub(crate) type Shares = PerGirth<Option<f64>>;
 struct Around {
     /// Length of the line (m).
     length: f64,
-    /// Hull of the section below the waist: height, depth (m).
+    /// Convex hull of the section in the median plane below the waist: height, depth (m).
     hull: Vec<Vec2>,
     /// Depth of the front end (m).
     front: f64,
@@ -74,12 +77,12 @@ impl Around {
     }
 }
 
-/// Share of the hips' girth by which the girth at the hips' level may be smaller: a tape set at this level
-/// finds the hips a few millimetres higher or lower.
+/// Share by which the girth at the hips' level given by lengths may be smaller than the largest girth: up to
+/// it, this level counts as the height of the hips.
 const LEVEL_SLACK: f64 = 0.01;
 
-/// Distance below their level at which hips count as lying clearly below, as a share of stature: a
-/// centimetre.
+/// Distance below their level given by lengths at which hips count as lying clearly below, as a share of
+/// stature: a centimetre.
 const BELOW: f64 = 0.006;
 
 /// Halvings of a range in a bisection: to a billionth of it.
@@ -192,12 +195,12 @@ impl<'a> TapedSkin<'a> {
         })
     }
 
-    /// Girth of a taping at a position (m).
+    /// Girth by a definition, taped at a position (m).
     pub(crate) fn taped(&self, taping: &Taping, place: f64) -> f64 {
         closed_length(&self.taped_hull(taping, place))
     }
 
-    /// Hull of the section of a taping at a position.
+    /// Hull of the section by a definition, at a position (m).
     fn taped_hull(&self, taping: &Taping, place: f64) -> Vec<Vec2> {
         let cut = CutPlane::of(taping.cut, place, self.marks, self.warp);
         self.skinned.hull(cut.part, cut.plane, Some(cut.near))
@@ -326,12 +329,12 @@ impl<'a> TapedSkin<'a> {
         Some(Vec3::new(on.x, y, on.y))
     }
 
-    /// Range of triangles of the template that cross a height (m).
+    /// Range on the template of the triangles that may cross a height on the body (m).
     fn around(&self, height: f64) -> Option<Near> {
         Some(self.warp.near(height, 0.08))
     }
 
-    /// Range of heights of the template with triangles between two heights (m).
+    /// Range of heights on the template of the triangles between two heights on the body (m).
     fn between(&self, low: f64, high: f64) -> Option<[f64; 2]> {
         match (self.around(low)?, self.around(high)?) {
             (Near::Level([from, _]), Near::Level([_, to])) => Some([from, to]),
@@ -471,12 +474,13 @@ impl<'a> TapedSkin<'a> {
         Some(0.5 * (low + high))
     }
 
-    /// Length of the part of a girth in front of the side lines or behind them (m).
+    /// Length of the part of a girth in front of the side lines (`side` 1) or behind them (-1) (m).
     fn part(&self, girth: Girth, side: f64) -> f64 {
         part_of(&self.hull(girth), side, self.warp.side_of(girth))
     }
 
-    /// Depth of the side lines of a girth for which the girth's part on one side has a length (m).
+    /// Depth of the side lines, between `-limit` and `limit`, for which the part of a girth in front of them
+    /// (`side` 1) or behind them (-1) has a length (m).
     pub(crate) fn sides_of(&self, girth: Girth, side: f64, length: f64, limit: f64) -> f64 {
         let hull = self.hull(girth);
         let (mut low, mut high) = (-limit, limit);

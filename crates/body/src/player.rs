@@ -25,7 +25,7 @@ pub enum PlayCommand {
     Rate(f64),
 }
 
-/// Largest rate of a player.
+/// Largest rate of a player (1); at a rate of 1 a clip is as fast as it was made.
 pub const MAX_RATE: f64 = 2.0;
 /// Longest fade (s).
 pub const MAX_FADE: f64 = 60.0;
@@ -76,8 +76,9 @@ struct Shown {
 #[serde(deny_unknown_fields)]
 struct Fade {
     to: Shown,
-    /// Duration of the fade, and time that has passed of it (s).
+    /// Duration of the fade (s).
     length: f64,
+    /// Time of the fade that has passed (s).
     gone: f64,
 }
 
@@ -89,11 +90,13 @@ pub struct Playback {
     fade: Option<Fade>,
     /// Clip and fade that wait for the end of the present fade.
     waiting: Option<(usize, f64)>,
-    /// Requested rate, whether the clock runs, and its present rate.
+    /// Requested rate of the clock (1).
     asked: f64,
+    /// Whether the clock runs; if not, it comes to rest or is at rest.
     goes: bool,
+    /// Present rate of the clock (1).
     rate: f64,
-    /// Distance over the ground so far, over the leg length.
+    /// Distance over the ground so far, divided by the leg length (1).
     travelled: Vec3,
 }
 
@@ -121,7 +124,7 @@ impl Playback {
         self.fade.map_or(self.shown, |fade| fade.to).clip
     }
 
-    /// Distance over the ground so far, over the leg length (1).
+    /// Distance over the ground so far, divided by the leg length (1).
     pub fn travelled(&self) -> Vec3 {
         self.travelled
     }
@@ -289,7 +292,8 @@ impl Player {
         next
     }
 
-    /// The present pose, without the distance over the ground: the root's position is over the leg length.
+    /// The present pose, without the distance over the ground. The shift of the root is divided by the leg
+    /// length.
     pub fn pose(&self) -> Pose {
         self.pose_of(&self.playback)
     }

@@ -165,7 +165,8 @@ impl ProportionBox {
             let done = Map::new(&frame, (chin, head), low, across)?.description(body);
             let got = Self::of_body(&Mannequin::from_description(&done)?);
             let mut furthest = 0.0_f64;
-            // Rings move in steps as the chin moves: smaller corrections find a position between two steps.
+            // The skin's rings shift by steps when the chin moves, and the measured proportions with them:
+            // smaller corrections find a position between two steps.
             let share = if round < ROUNDS / 2 { 1.0 } else { 0.5 };
             let mut miss = |asked: Option<f64>, got: Option<f64>| -> f64 {
                 match (asked, got) {
@@ -288,8 +289,8 @@ impl Map {
         self.across[0] + (self.across[1] - self.across[0]) * share
     }
 
-    /// Ratio of breadth and depth of neck and head at a height (1): up to half the neck that of the trunk,
-    /// from the chin on that of the head.
+    /// Ratio of breadth and depth of neck and head at a height (1): 1 up to the middle of the neck, from the
+    /// chin on the ratio of the head.
     fn round(&self, y: f64) -> f64 {
         let chin = self.heights[2][0];
         let half = 0.5 * (self.frame.joints.neck[1] + chin);

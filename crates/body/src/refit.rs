@@ -60,7 +60,7 @@ fn sides(primitive: &Primitive) -> [Vec3; 2] {
     [centre, twin]
 }
 
-/// S^-1 R^T (1/m).
+/// The matrix `S^-1 R^T` of a primitive (1/m), see [`Primitive`].
 fn inverse(primitive: &Primitive) -> Matrix3<f64> {
     let inverse = Matrix3::from_diagonal(&Vec3::from(primitive.radii).map(|r| 1.0 / r));
     inverse * primitive.rotation().matrix().transpose()

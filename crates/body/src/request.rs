@@ -25,9 +25,10 @@ pub(crate) struct Request {
     pub(crate) conflicts: Vec<Conflict>,
 }
 
-/// Limits of a length as a share of stature and of an angle (rad): wider than any body, so that only errors
-/// of unit or typing are refused.
+/// Limits of a length as a share of stature: wider than any body, so that only errors of unit or typing are
+/// refused.
 const LENGTH: [f64; 2] = [0.004, 2.2];
+/// Limits of an angle (rad): wider than on any body, for the same reason.
 const ANGLE: [f64; 2] = [-0.2, 1.3];
 /// Limits of the angle of the arms below the horizontal (rad): from 0, arms straight out to the sides, which
 /// many programs use.
@@ -57,8 +58,8 @@ const CLOSER: [(&str, [f64; 2]); 17] = [
 ];
 
 impl Request {
-    /// Whether levels and lengths over the bust are all requested; then the length along the skin below the
-    /// bust determines how far the bust stands out.
+    /// Whether levels and lengths over the bust are all requested and do not contradict each other; then the
+    /// length along the skin below the bust determines how far the bust stands out.
     pub(crate) fn follows_skin(&self) -> bool {
         let all = [
             "bust_to_underbust",

@@ -18,23 +18,24 @@ use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 const HALF: usize = 24;
 /// Number of points of the crotch line between front and back midline.
 pub(crate) const CROTCH_POINTS: usize = 7;
-/// Distance between rings of arms and legs (m).
+/// Distance between rings of arms and legs, for a stature of 1.7 m (m).
 pub(crate) const SPACING: f64 = 0.0165;
 /// Number of rings from a border to the first plane ring of a limb.
 pub(crate) const TRANSITION: usize = 5;
 
-/// Distance along the side between rows of the fan over the shoulder, for a stature of 1.7 m (m).
+/// Distance along the side between rows over the shoulder, for a stature of 1.7 m (m). The rays of these rows
+/// fan out from one point.
 pub(crate) const FAN: f64 = 0.0145;
 
 /// Distance between rows across the face, for a stature of 1.7 m (m).
 const FACE: f64 = 0.0055;
 /// Depth below the crown up to which the rows across the face reach, for a stature of 1.7 m (m).
 const ABOVE_BROW: f64 = 0.08;
-/// Largest angle by which rays gather at nose and ears (rad), and number of rows over which the angle grows
-/// to its largest value.
+/// Largest angle by which rays gather at nose and ears (rad).
 const GATHERING: f64 = 0.09;
+/// Number of rows over which this angle grows to its largest value.
 const GATHERED: usize = 4;
-/// Number that marks an open vertex of a grid, inside the hole for a limb.
+/// Number in place of a vertex where a grid has none, inside the hole for a limb.
 pub(crate) const OPEN: u32 = u32::MAX;
 
 /// A skin before any measurement is applied.
@@ -66,7 +67,7 @@ struct Row {
     elevation: f64,
     part: Part,
     /// Angle by which the rays of a row across the face gather at nose and ears (rad); such a row has twice
-    /// the columns.
+    /// the columns. `None` for other rows.
     gathering: Option<f64>,
 }
 
@@ -114,6 +115,7 @@ pub(crate) struct Half<'a> {
     pub(crate) template: &'a Template,
     pub(crate) field: &'a Field,
     pub(crate) positions: Vec<Vec3>,
+    /// Whether each vertex lies in the median plane.
     middle: Vec<bool>,
     pub(crate) arm: Vec<f64>,
     pub(crate) leg: Vec<f64>,
@@ -142,8 +144,8 @@ pub(crate) fn cast(template: &Template, field: &Field) -> Result<TemplateSkin, B
     Ok(half.mirrored(&border))
 }
 
-/// Casts the skin of a framed template. A hand whose tip is not enclosed by the primitives is shortened, at
-/// most to half.
+/// Casts the skin of a template with a frame of its own. A hand whose tip is not enclosed by the primitives
+/// is shortened, at most to half.
 pub(crate) fn cast_framed(template: &mut Template) -> Result<TemplateSkin, BodyError> {
     let field = Field::new(&template.primitives);
     let least = 0.5 * template.hand;
@@ -185,7 +187,8 @@ pub(crate) fn crossings(mesh: &TriangleMesh) -> usize {
     SurfaceTree::new(mesh.clone()).self_intersections().len()
 }
 
-/// Rings where limbs begin, in the order in which the limbs' rings run.
+/// Vertices of the trunk at which the limbs begin. `arm` and `bottom` list them in the order of the rings of
+/// arm and leg.
 struct Borders {
     armpit: Vec<u32>,
     fold: u32,
@@ -210,7 +213,8 @@ impl Half<'_> {
         self.parts.push(part);
     }
 
-    /// Point where a ray from inside first leaves the union of some parts; an error names the first of them.
+    /// Point where a ray from a point inside first leaves the union of some parts; an error names the first
+    /// of them.
     pub(crate) fn hit(
         &self,
         parts: &[Part],
@@ -264,7 +268,7 @@ impl Half<'_> {
         let mut rows = Vec::new();
         // Level rings up to the armpit.
         let bottom = t.crotch + 0.035 * scale;
-        // A row below the armpit, if its height is known.
+        // If the height of the armpit is known, the level rows end the distance of one row below it.
         let base = armpit - if t.armpit.is_some() { FAN } else { 0.02 } * scale;
         let count = ((base - bottom) / (0.016 * scale)).round() as usize;
         let focus = Vec3::new(0.0, base, self.middle_z(j.chest, base));
@@ -435,8 +439,8 @@ impl Half<'_> {
     /// Replaces the points of tilted neck rays that ran on into a large chin. The new rays are level and
     /// start from the axis of the neck, evenly spaced between the rows below and the first level row.
     fn below_the_chin(&mut self, rows: &[Row], grid: &[Vec<u32>]) -> Result<(), BodyError> {
-        /// Largest height of the end of a tilted ray above the first level row, as a share of stature: less
-        /// than half the distance to the next row.
+        /// Largest height of the end of a tilted ray above the first level row, as a share of stature, on a
+        /// body without features and with them: less than half the distance to the next row.
         const OVER: [f64; 2] = [0.006, 0.0016];
         let is_head = |t: &usize| rows[*t].part == Part::Head;
         let Some(neck) = (1..rows.len()).find(is_head) else {

@@ -24,15 +24,15 @@ pub(crate) struct TrunkScales {
     pub(crate) section: PerGirth<SectionForm>,
     /// Amount by which the front corners of the chest are fuller, and the back ones less full (1).
     pub(crate) chest_asymmetry: f64,
-    /// Scale at the crotch over the scale at the hips: less than 1 if otherwise a section below the hips had
-    /// a larger girth than the hips.
+    /// Scale at the crotch divided by the scale at the hips (1): less than 1 if otherwise a section below the
+    /// hips had a larger girth than the hips.
     pub(crate) crotch_to_hips: f64,
 }
 
 /// The form of a section of the trunk.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectionForm {
-    /// Square of lateral over frontal scale.
+    /// Lateral scale divided by frontal scale (1).
     pub(crate) aspect: f64,
     /// Amount by which the corners are fuller (1).
     pub(crate) corner_fullness: f64,
@@ -68,7 +68,7 @@ pub(crate) struct ArmScales {
 }
 
 impl Scales {
-    /// The template's own scales, for a body with a ratio of statures.
+    /// Scales to start from: those of the template for a body with a ratio of statures, body to template.
     pub(crate) fn new(stature_ratio: f64, marks: &TemplateMarks) -> Self {
         let section = SectionForm {
             aspect: 1.0,

@@ -15,8 +15,8 @@ pub struct Scaling {
     pub frontal: f64,
     /// High lateral: breadth of arms and head, and of the trunk above the spine's origin (1).
     pub high_lateral: f64,
-    /// Spine origin: ratio of its heights at the same stature (1); if trunk or legs are lengthened, the other
-    /// is shortened.
+    /// Spine origin: its new height divided by its old one, at the same stature (1). A higher origin
+    /// lengthens the legs and shortens the trunk.
     pub spine_origin: f64,
     /// Low lateral: breadth of legs, and of the trunk below the spine's origin (1).
     pub low_lateral: f64,

@@ -76,23 +76,27 @@ pub struct ScanLandmarks {
 /// A closed mesh of a person standing upright, facing +Z, measured by sections.
 pub struct Scan {
     mesh: TriangleMesh,
+    /// Height of the lowest point (m).
     pub(crate) floor: f64,
     height: f64,
+    /// x of the median plane (m).
     pub(crate) middle: f64,
     landmarks: ScanLandmarks,
 }
 
-/// Steps of the search for crotch and armpits, as a share of stature, and halvings of the step that they lie
-/// in.
+/// Step of the search for the crotch, as a share of stature.
 const CROTCH_STEP: f64 = 0.001;
+/// Step of the search for the armpits, as a share of stature.
 const ARMPIT_STEP: f64 = 0.002;
+/// Number of halvings of the step in which crotch or armpits lie.
 const HALVINGS: usize = 8;
 /// Sudden increase in the trunk's breadth where arms join it, as a share of stature.
 const ARM_BREADTH: f64 = 0.05;
-/// Levels of an upright person, as shares of stature, used as the start of a search or if the search fails:
-/// crotch, waist and armpits.
+/// Height of the crotch of an upright person, as a share of stature, used if the search for it fails.
 const CROTCH: f64 = 0.46;
+/// Height of the waist, as a share of stature: the searches for crotch and armpits start there or near it.
 const WAIST: f64 = 0.6;
+/// Height of the armpits, as a share of stature, used if the search for them fails.
 const ARMPIT: f64 = 0.74;
 /// Highest armpit, as a share of stature.
 const ARMPIT_MOST: f64 = 0.85;

@@ -10,6 +10,7 @@ use toile_measure::{Measurements, Origin};
 /// Range of the narrowest level of the neck: least height above the armpits and least depth below the crown,
 /// as a share of stature.
 const NECK: [f64; 2] = [0.03, 0.07];
+/// Distance between the levels tried for the neck, as a share of stature.
 const NECK_STEP: f64 = 0.0025;
 /// Length of a loop as a share of stature below which it is a finger or an ear.
 const LIMB: f64 = 0.04;

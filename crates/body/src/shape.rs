@@ -28,9 +28,9 @@ pub(crate) struct Shape {
 pub(crate) struct TrunkShape {
     /// Lateral scale (1).
     pub(crate) lateral: Curve,
-    /// Frontal scale before the plane z = 0 (1).
+    /// Frontal scale in front of the middle of a section, which `middle_on_template` gives (1).
     pub(crate) front: Curve,
-    /// Frontal scale behind the plane z = 0 (1).
+    /// Frontal scale behind the middle of a section (1).
     pub(crate) back: Curve,
     /// Amount by which the corners of a section lie farther out at equal breadth and depth (1).
     pub(crate) corner_fullness: Curve,

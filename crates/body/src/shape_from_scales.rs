@@ -10,8 +10,8 @@ use crate::shape::{ArmShape, Curve, LegShape, Shape, ShoulderShape, TrunkShape, 
 use crate::solve_input::SolveInput;
 use crate::template_marks::{TemplateMarks, UNDERBUST};
 
-/// Smallest sideways scale of the legs' stance, over the scale of the thighs: with less, thick thighs would
-/// meet.
+/// Smallest sideways scale of the legs' stance, divided by the scale of the thighs (1): with less, thick
+/// thighs would meet.
 const ASTRIDE: f64 = 0.75;
 
 /// Scales at one level of the trunk: height on the template (m), lateral, front, back.
@@ -158,7 +158,8 @@ fn trunk(
         Girth::HighHips,
     ] {
         if let (Some(_), Some(level)) = (input.request.girth(girth), girth.level()) {
-            // Hips keep their girth at whatever level the lengths place them.
+            // The hips' scale is set within the range in which hips are searched for, also if lengths place
+            // their level outside it.
             let range = match girth {
                 Girth::Hips => trunk_range(girth, ends),
                 _ => None,

@@ -19,7 +19,9 @@ use toile_geometry::{Rigid, Vec3};
 /// axes parallel to the body's, as in H-Anim; data fixed to a joint are given in that frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
+    /// Centres of the joints at rest (m).
     rest: [Vec3; Joint::COUNT],
+    /// Steepest angle below the horizontal at which straight arms clear the body (rad).
     hang: f64,
 }
 

@@ -13,17 +13,21 @@ pub(crate) struct Skinning {
     shares: Vec<Shares>,
 }
 
-/// Half the length over which skin passes from one bone to the next, as a share of stature: at elbows, wrists
-/// and ankles, at knees, and in the trunk.
+/// Half the length over which skin passes from one bone to the next at elbows, wrists and neck, as a share of
+/// stature.
 const SMALL: f64 = 0.026;
+/// The same at knees.
 const KNEE: f64 = 0.035;
+/// The same in the trunk.
 const SPINE: f64 = 0.04;
 
-/// A chain of joints with the position of each along it (m) and half the length of its passage (m).
+/// A chain of joints, each with its position along the chain and half the length over which skin passes to it
+/// from the joint before (m).
 struct Chain(Vec<(Joint, f64, f64)>);
 
 impl Chain {
-    /// Weights at a position along the chain: a vertex beyond a joint's passage follows that joint.
+    /// Adds to `into` the weights of a vertex at a position along the chain (m); they add up to `weight`.
+    /// Beyond the passage to a joint the vertex follows this joint and no longer those before it.
     fn shares(&self, place: f64, weight: f64, into: &mut Shares) {
         let mut rest = weight;
         for (k, &(joint, _, _)) in self.0.iter().enumerate() {

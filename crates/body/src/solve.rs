@@ -32,12 +32,13 @@ pub(crate) struct Solved {
 
 /// Number of rounds between two extrapolations of the unknowns to their limit.
 const EXTRAPOLATION_INTERVAL: usize = 8;
-/// Number of rounds in which posture and form are still corrected: if the form of a bust, which influences
-/// all other unknowns, is solved for; and if it is not. Most bodies need 8 to 15.
+/// Number of rounds in which posture and form are still corrected. The first number holds if the form of a
+/// bust is solved for, which influences all other unknowns, the second if it is not. Most bodies need 8 to 15
+/// rounds.
 const FORMING: [usize; 2] = [32, 24];
-/// Number of rounds after [`FORMING`], in which only girths and levels are corrected; and number of first
-/// rounds in which the form of sections is corrected.
+/// Number of rounds after [`FORMING`], in which only girths and levels are corrected.
 const LAST: usize = 16;
+/// Number of first rounds in which the form of sections is corrected.
 const SHAPING: usize = 12;
 /// Number of rounds between two searches for the positions of girths.
 const LOOKS: usize = 4;
@@ -263,7 +264,7 @@ impl SolveInput<'_> {
             let asked = q.is_asked(name).then(|| q.get(name))?;
             Some(asked - taken.value(name)?)
         };
-        // Moves an unknown by a step between limits; `worth` converts the step to a length (m).
+        // Moves an unknown by a step and keeps it between limits; `worth` converts the step to a length (m).
         let mut step = |unknown: &mut f64, by: f64, [low, high]: [f64; 2], worth: f64| {
             let before = *unknown;
             *unknown = (before + by).clamp(low, high);
@@ -398,8 +399,9 @@ const PARTS: [(Girth, &str, f64); 5] = [
     (Girth::Hips, "hip_back_width", -1.0),
 ];
 
-/// Range of the square of lateral over frontal scale, and of the fullness of corners: people differ by less.
+/// Range of the lateral scale of a section divided by the frontal one (1): people differ by less.
 const ASPECT: [f64; 2] = [0.7, 1.3];
+/// Range of the fullness of a section's corners (1): people differ by less.
 const CORNERS: [f64; 2] = [-0.3, 0.3];
 
 /// Range of the fullness of a chest's front corners relative to the mean of front and back.
@@ -408,10 +410,10 @@ const ASYMMETRY: [f64; 2] = [-0.25, 0.25];
 /// Largest distance of a neck from the template's position, as a share of stature.
 const NECK_FORWARD: f64 = 0.05;
 
-/// Range of a girth of the trunk at the section that sets its scale, over the girth where it is taped.
+/// Range of a trunk girth at the section that sets its scale, divided by the girth where it is taped (1).
 const BESIDE: [f64; 2] = [0.7, 1.5];
 
-/// Range of the trunk's scale at the crotch over the scale at the hips.
+/// Range of the trunk's scale at the crotch divided by the scale at the hips (1).
 const CROTCH_TO_HIPS: [f64; 2] = [0.85, 1.0];
 
 /// Largest share of the hips' girth by which the girth at the hips' level may be smaller.
@@ -438,9 +440,9 @@ const SPREAD: [f64; 2] = [-0.4, 1.0];
 /// Range of the projection of the bust points, as a share of stature.
 const PROJECTION: [f64; 2] = [-0.02, 0.085];
 
-/// Range of the flatness of a crotch, and lengthening of the crotch length by a level one, as a share of
-/// stature.
+/// Range of the flatness of a crotch (1).
 const FLATNESS: [f64; 2] = [-0.3, 0.97];
+/// Lengthening of the crotch length by a level crotch, as a share of stature.
 const LEVELLED: f64 = 0.05;
 
 /// Half the least gap between the legs, as a share of stature: cloth must pass.

@@ -79,12 +79,14 @@ impl MeshUnit {
         }
     }
 
-    /// The unit in which a height has the size of a person; metres if several units fit, and for a doll.
+    /// The unit in which a height has the size of a person; metres if these are among several that fit, and
+    /// for the size of a doll.
     fn of_height(height: f64) -> Result<Self, BodyError> {
         let fits = |unit: &Self| PERSON.contains(&(height * unit.metres()));
         let fitting: Vec<Self> = Self::ALL.into_iter().filter(fits).collect();
         match fitting[..] {
-            // Inches alone could be a child's, or the centimetres of a doll.
+            // A height that fits only inches can be that of a child in inches or that of a doll in
+            // centimetres.
             [unit] if unit != Self::Inch => Ok(unit),
             [Self::Metre, ..] => Ok(Self::Metre),
             [] if DOLL.contains(&height) => Ok(Self::Metre),
@@ -134,8 +136,9 @@ impl FromStr for MeshUnit {
     }
 }
 
-/// Statures of persons, and statures of dolls (m); dolls are accepted only in metres.
+/// Statures of persons (m).
 const PERSON: std::ops::RangeInclusive<f64> = 0.45..=2.5;
+/// Statures of dolls (m), accepted only of a mesh in metres.
 const DOLL: std::ops::Range<f64> = 0.12..0.45;
 
 /// Requested values of a mesh's stance; values that are left out are detected.
@@ -221,8 +224,8 @@ impl Stance {
         }
     }
 
-    /// The stance of a mesh in which a standing person is recognized, with requested values as given; `None`
-    /// if no person is recognized.
+    /// The stance of a mesh in which a standing person is recognized; requested values replace recognized
+    /// ones. `None` if no person is recognized.
     ///
     /// # Errors
     /// [`BodyError::Mesh`] for a person whose height is possible in several units or in none.
@@ -296,15 +299,19 @@ struct Standing {
     height: f64,
 }
 
-/// Levels as a share of stature at which two legs, a trunk, a head, an ankle and the foot below it are looked
-/// for.
+/// Heights at which two legs are looked for, as shares of stature.
 const LEGS: [f64; 3] = [0.14, 0.22, 0.3];
+/// Height at which a trunk is looked for, as a share of stature.
 const TRUNK: f64 = 0.58;
+/// Height at which a head is looked for, as a share of stature.
 const HEAD: f64 = 0.94;
+/// Height at which the ankles are looked for, as a share of stature.
 const ANKLE: f64 = 0.08;
+/// Height at which the feet are looked for, as a share of stature.
 const FOOT: f64 = 0.02;
-/// Smallest length of the outline of a leg and largest of the outline of a head, as shares of stature.
+/// Smallest length of the outline of a leg, as a share of stature.
 const LEG_LEAST: f64 = 0.06;
+/// Largest length of the outline of a head, as a share of stature.
 const HEAD_MOST: f64 = 0.9;
 /// Least length of the outline of the thinner leg over the length of the other leg's outline.
 const ALIKE: f64 = 0.6;
@@ -374,7 +381,7 @@ fn pair(mut outlines: Vec<Outline>) -> Option<[Outline; 2]> {
     (alike && alone).then(|| [two[0].clone(), two[1].clone()])
 }
 
-/// An outline of a level section, whole or in part.
+/// An outline of a level section, whole or in part, by its length and the corners of its box.
 #[derive(Clone, Debug)]
 struct Outline {
     length: f64,
@@ -394,11 +401,12 @@ impl Outline {
     }
 }
 
-/// The outlines of a level section: segments connected at edges of the mesh, which need not be closed.
+/// The outlines of a level section. An outline consists of segments that meet at edges of the mesh; it need
+/// not be closed.
 fn outlines(mesh: &TriangleMesh, up: Vec3, level: f64) -> Vec<Outline> {
     let above = |v: u32| mesh.positions[v as usize].dot(&up) - level;
     let mut found: Vec<Option<Outline>> = Vec::new();
-    // The outline that each edge is on so far.
+    // The outline that each cut edge of the mesh belongs to so far.
     let mut on: HashMap<[u32; 2], usize> = HashMap::new();
     let mut joined: Vec<usize> = Vec::new();
     let root = |joined: &[usize], mut k: usize| {

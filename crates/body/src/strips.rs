@@ -36,7 +36,7 @@ impl Half<'_> {
         }
     }
 
-    /// Adds two triangles, split along the shorter diagonal.
+    /// Adds a quadrilateral as two triangles, split along the shorter diagonal.
     fn quad(&mut self, part: Part, [a, b, c, d]: [u32; 4]) {
         let at = |v: u32| self.positions[v as usize];
         if (at(a) - at(c)).norm() <= (at(b) - at(d)).norm() {

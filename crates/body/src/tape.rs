@@ -109,7 +109,7 @@ impl<'a> Skinned<'a> {
     /// Convex hull of a section, in the plane's own coordinates, first axis sideways.
     pub(crate) fn hull(&self, part: Part, plane: [Vec3; 2], near: Option<Near>) -> Vec<Vec2> {
         let [origin, normal] = plane;
-        // The trunk ends in the first rings of the legs.
+        // A section of the trunk can pass through the first rings of the legs.
         let parts: &[Part] = match part {
             Part::Trunk => &[Part::Trunk, Part::LeftLeg],
             // The root of the neck belongs to the trunk.

@@ -177,8 +177,8 @@ pub(crate) struct Template {
     pub(crate) armpit: Option<f64>,
     /// Distance from the wrist to the last ring of the hand (m).
     pub(crate) hand: f64,
-    /// A distance from the median plane that lies outside the neck and below the shoulder's slope (m): the
-    /// rays of shoulders and neck cross outside it.
+    /// A distance from the median plane that lies outside the neck and below the shoulder's slope (m): rays
+    /// of the rows over shoulder and neck cross only farther out.
     pub(crate) neck_radius: f64,
     /// Positions of fine features, if the body has face and thumbs.
     pub(crate) features: Option<Features>,
@@ -188,8 +188,9 @@ pub(crate) struct Template {
     pub(crate) rigging: Rigging,
 }
 
-/// Distance from the wrist to the last ring of the hand, and radius of the neck, of a body of 1.7 m (m).
+/// Distance from the wrist to the last ring of the hand, of a body of 1.7 m (m).
 pub(crate) const HAND: f64 = 0.176;
+/// The distance `neck_radius` of [`Template`], of a body of 1.7 m (m).
 pub(crate) const NECK_RADIUS: f64 = 0.082;
 
 impl Table {

@@ -109,17 +109,19 @@ pub(crate) struct LegMarks {
     pub(crate) heel: Plane,
 }
 
-/// Number of stored centres of the arm, distance of the first from the shoulder joint, and distance between
-/// two of them, over the wrist's distance from the shoulder joint.
+/// Number of stored centres of the arm.
 pub(crate) const ARM_MIDDLES: usize = 24;
+/// Distance of the first centre from the shoulder joint, divided by that of the wrist (1).
 pub(crate) const ARM_BEGINS: f64 = 0.2;
+/// Distance between two centres, divided by the distance of the wrist from the shoulder joint (1).
 pub(crate) const ARM_STEP: f64 = 0.05;
 
 /// Number of stored points of the crotch's line.
 pub(crate) const CROTCH_PLACES: usize = 21;
 
-/// Distance between two of the [`CROTCH_PLACES`] points, and largest stored rise, as shares of stature.
+/// Distance between two of the [`CROTCH_PLACES`] points, as a share of stature.
 const CROTCH_STEP: f64 = 0.01;
+/// Largest stored rise of the midline above the crotch, as a share of stature.
 const CROTCH_RISE: f64 = 0.045;
 
 /// Number of stored sections of the trunk.
@@ -136,7 +138,7 @@ const NECK: f64 = 0.42;
 
 /// Distance of the underbust below the bust, as a share of stature.
 pub(crate) const UNDERBUST: f64 = 0.042;
-/// Range of the calf's height, over the knee's.
+/// Range of the height of the calf, as shares of the height of the knee.
 const CALF: [f64; 2] = [0.55, 0.9];
 
 impl TemplateMarks {
@@ -239,7 +241,7 @@ fn depth(skin: &TemplateSkin, [low, high]: [f64; 2]) -> f64 {
         .sum()
 }
 
-/// Range of the distance of a bust point from the median plane, over the distance of the end of the shoulder.
+/// Range of the distance of a bust point from the median plane, as shares of that of the end of the shoulder.
 const BUST_POINT: [f64; 2] = [0.45, 0.6];
 
 /// The left bust point at a height (m): the foremost point, but on a flat chest no nearer to the median plane
@@ -287,7 +289,8 @@ fn crotch_marks(skin: &TemplateSkin, crotch: f64, stature: f64) -> CrotchMarks {
     }
 }
 
-/// Extents of the trunk at even heights, relative to a depth (m).
+/// Sections of the trunk at even heights: height, half the breadth, and extents in front of and behind a
+/// depth (m).
 fn sections(skin: &TemplateSkin, [low, high]: [f64; 2], depth: f64) -> [[f64; 4]; SECTIONS] {
     std::array::from_fn(|k| {
         let y = low + (high - low) * k as f64 / (SECTIONS - 1) as f64;

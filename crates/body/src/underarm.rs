@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use toile_geometry::{TriangleMesh, Vec3};
 
-/// Number of smoothing passes, in which every vertex moves towards the mean of its neighbours, and number of
-/// passes if the arm presses against the trunk, where rings lie close.
+/// Number of smoothing passes, in which every vertex moves towards the mean of its neighbours.
 const PASSES: usize = 10;
+/// Number of passes if the arm presses against the trunk, where rings lie close.
 const PRESSED: usize = 80;
 
 /// Least distance of the arm from the side of the trunk: a share of the stature (1), and an increase for each
@@ -77,7 +77,7 @@ impl Underarm {
         }
     }
 
-    /// Smooths the vertices on a body of a stature (m), clear of the trunk.
+    /// Smooths the vertices on a body of a stature (m), and keeps them clear of the trunk.
     pub(crate) fn draw(&self, positions: &mut [Vec3], stature: f64) {
         let mut moved = vec![Vec3::zeros(); self.rows.len()];
         let mut presses = true;

@@ -106,7 +106,8 @@ impl Warp {
         self.trunk.template_level(height)
     }
 
-    /// Range of the template that may cross a height of the body (m), within a reach.
+    /// Range of heights on the template of the triangles that may cross a height on the body (m): about
+    /// `reach` (m) up and down from the level that corresponds to it.
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         self.trunk.near(height, reach)
     }

@@ -14,21 +14,26 @@ const BUST_REACH: [f64; 3] = [0.06, 0.10, 0.045];
 /// Distances sideways, up and down over which a flat crotch changes the body, as a share of stature.
 const CROTCH_REACH: [f64; 3] = [0.06, 0.15, 0.10];
 
-/// The map, for points of the left half, x >= 0. Curves are over template height.
+/// The map, for points of the left half, x >= 0. Curves are functions of the height on the template.
 #[derive(Clone)]
 pub(crate) struct TrunkWarp {
     /// Height on the body, by height on the template (m).
     height: Monotone,
-    /// Scales of sections, and changes of the fullness of their corners (1).
+    /// Sideways scale of sections (1).
     lateral: Monotone,
+    /// Scale of sections in front of their middle (1).
     front: Monotone,
+    /// Scale of sections behind their middle (1).
     back: Monotone,
+    /// Amount by which the corners of sections lie farther out (1).
     corner_fullness: Monotone,
+    /// Amount by which front corners lie farther out than that, and back corners less far (1).
     corner_asymmetry: Monotone,
     /// Half the breadth, and depths in front of and behind the centre of the section, on the template (m).
     extents: [Monotone; 3],
-    /// Depth about which sections are scaled (m).
+    /// Depth on the template about which sections are scaled (m).
     middle_on_template: Monotone,
+    /// Depth on the body about which sections are scaled (m).
     middle_on_body: Monotone,
     /// Rise of the body's midline above the crotch by depth on the template (m).
     crotch_rise: Monotone,
@@ -206,8 +211,9 @@ impl TrunkWarp {
         self.height.inverse(height)
     }
 
-    /// Range of the template that may cross a height of the body (m), within a reach: points that rise or
-    /// sink with shoulders, armpits and crotch come from farther away.
+    /// Range of heights on the template of the triangles that may cross a height on the body (m): `reach` (m)
+    /// up and down from the level that corresponds to it, or more where points rise or sink with shoulders,
+    /// armpits or crotch.
     pub(crate) fn near(&self, height: f64, reach: f64) -> Near {
         let (m, s) = (&self.marks, &self.shape);
         let moved =
