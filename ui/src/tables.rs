@@ -25,7 +25,7 @@ use crate::tools::number;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Color32, Grid, Id, PopupCloseBehavior, RichText, ScrollArea, TextStyle, Ui};
 use line_field::{is_entered, line_field};
-use toile_measure::{CATALOGUE, Definition, Measurements, UnitKind, definition};
+use toile_measure::{CATALOGUE, Definition, Measurements, definition, is_angle};
 use toile_pattern::{Number, Pattern, SizeId, VariableId, Want, plan};
 
 /// Measurements that the first size of a pattern gets, with the wearer's values.
@@ -267,7 +267,7 @@ impl ToileApp {
         name: &str,
         value: Option<f64>,
     ) {
-        let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+        let is_angle = is_angle(name);
         let want = if is_angle { Want::Angle } else { Want::Length };
         let id = Id::unique(("measurement", size, name));
         let is_asked = self.tables.entered_measurement.as_deref() == Some(name);

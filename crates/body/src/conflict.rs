@@ -1,7 +1,7 @@
 //! Contradictions: measurements that no single body has together.
 
 use std::f64::consts::SQRT_2;
-use toile_measure::{Measurements, Origin};
+use toile_measure::{Measurements, Origin, is_angle};
 
 /// Measurements that contradict one another. The body meets them in the sense of least squares.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +12,13 @@ pub struct Conflict {
     pub gap: f64,
     /// Reason for the contradiction, and the change to make.
     pub why: &'static str,
+}
+
+impl Conflict {
+    /// Whether the disagreement is one of angles.
+    pub fn is_angle(&self) -> bool {
+        self.names.iter().all(|name| is_angle(name))
+    }
 }
 
 /// A sum of measurements (m) that on any body is at least a share of the stature: names with their factors,

@@ -5,7 +5,7 @@ use crate::conflict::Conflict;
 use crate::girths::Girth;
 use crate::measured::TapedSkin;
 use crate::tape::Skinned;
-use toile_measure::{Origin, UnitKind, definition};
+use toile_measure::{Origin, definition, is_angle};
 
 /// A measurement as requested or predicted, and as taken from the skin by our own tape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ impl Deviation {
 
     /// Whether the measurement is an angle.
     pub fn is_angle(&self) -> bool {
-        definition(self.name).is_some_and(|known| known.kind == UnitKind::Angle)
+        is_angle(self.name)
     }
 }
 
@@ -107,7 +107,9 @@ impl Mannequin {
             let mut named = false;
             for conflict in &mut found {
                 if row.origin == Origin::Asked && conflict.names.contains(&row.name) {
-                    conflict.gap = conflict.gap.max(row.deviation().abs());
+                    if conflict.is_angle() == row.is_angle() {
+                        conflict.gap = conflict.gap.max(row.deviation().abs());
+                    }
                     named = true;
                 }
             }

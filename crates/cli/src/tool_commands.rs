@@ -150,7 +150,10 @@ pub fn body(body: &Body, output: &Output) -> Result<Value, Failure> {
     let conflicts: Vec<Value> = report
         .conflicts
         .iter()
-        .map(|c| json!({ "names": c.names, "gap_m": c.gap, "why": c.why }))
+        .map(|c| {
+            let gap = if c.is_angle() { "gap_rad" } else { "gap_m" };
+            json!({ "names": c.names, gap: c.gap, "why": c.why })
+        })
         .collect();
     let mut made = json!({
         "files": [body.out],
@@ -307,9 +310,13 @@ fn body_table(report: &BodyReport, output: &Output) {
         output.say(format!("not taken on a standing body: {name}"));
     }
     for conflict in &report.conflicts {
+        let (scale, unit) = match conflict.is_angle() {
+            true => (1f64.to_degrees(), "degrees"),
+            false => (100.0, "cm"),
+        };
         output.say(format!(
-            "conflict of {:.1} cm: {}: {}",
-            conflict.gap * 100.0,
+            "conflict of {:.1} {unit}: {}: {}",
+            conflict.gap * scale,
             conflict.names.join(", "),
             conflict.why
         ));

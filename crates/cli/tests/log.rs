@@ -87,7 +87,7 @@ fn a_check_tells_what_was_recomputed() {
 #[test]
 fn a_word_that_is_not_known_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let output = logged(folder.path(), Some("loud"), &["make"]);
+    let output = logged(folder.path(), Some("loud"), &["check", "missing.json"]);
     assert_eq!(output.status.code(), Some(2));
     let said =
         "error: the environment variable TOILE_LOG is \"loud\": give one of off, info, debug\n";

@@ -87,6 +87,9 @@ fn check(mesh: &MovingGlbMesh, times: usize) -> Result<(), FormatError> {
         Err(FormatError::new(place, what, "record the frames again"))
     };
     let frames = mesh.frames.len();
+    if frames == 0 {
+        return refuse("it has no frame".to_owned());
+    }
     if frames != 1 && frames != times {
         return refuse(format!(
             "it has {frames} frames, but there are {times} times"
@@ -218,6 +221,11 @@ mod tests {
             }
         }
         assert_eq!(document.meshes().count(), 2);
+        let none = MovingGlbMesh {
+            frames: Vec::new(),
+            ..moving.clone()
+        };
         assert!(write_frames_glb(&[moving], &times[..2]).is_err());
+        assert!(write_frames_glb(&[none], &[]).is_err());
     }
 }

@@ -7,7 +7,7 @@ use toile_body::{
     Blend, BodyFrame, Deformation, Description, Features, Figure, Joint, Joints, Part, Particular,
     Primitive, Rigging,
 };
-use toile_measure::{Measurements, Origin, UnitKind, definition};
+use toile_measure::{Measurements, Origin, is_angle};
 
 const KIND: &str = "mannequin";
 const VERSION: u32 = 1;
@@ -222,10 +222,6 @@ pub fn write_mannequin(description: &Description) -> Result<String, FormatError>
         .map_err(|error| FormatError::new("mannequin", error.to_string(), "check the values"))?;
     // One primitive per line.
     Ok(text.replace("],[", "],\n[").replace("]],\"", "]],\n\"") + "\n")
-}
-
-fn is_angle(name: &str) -> bool {
-    definition(name).is_some_and(|known| known.kind == UnitKind::Angle)
 }
 
 /// Reads a file of [`write_mannequin`].

@@ -11,7 +11,7 @@
 //! - [`crate::xml`], [`crate::recognise::FileKind`]: XML; kinds of files told apart.
 
 use crate::FormatError;
-use toile_measure::{FREESEWING, Measurements, Origin, UnitKind, definition, translated};
+use toile_measure::{FREESEWING, Measurements, Origin, is_angle, translated};
 
 /// Reads a table of FreeSewing: a JSON object of names and values in millimetres (slopes in degrees), at the
 /// top or under `measurements` or `measies`.
@@ -78,7 +78,7 @@ pub(crate) fn put(
     number: f64,
     scale: f64,
 ) -> Result<(), String> {
-    let angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+    let angle = is_angle(name);
     let value = if angle {
         number.to_radians()
     } else {

@@ -1,9 +1,9 @@
 //! Tables of body measurements of GarmentCode (YAML).
 
 use crate::FormatError;
-use toile_measure::{Measurements, Origin, UnitKind, definition};
+use toile_measure::{Measurements, Origin, is_angle};
 
-/// Names with values in degrees, besides those that [`definition`] knows as angles; other values are in
+/// Names with values in degrees, besides those that [`is_angle`] knows; other values are in
 /// centimetres.
 const DEGREES: [&str; 3] = ["arm_pose_angle", "hip_inclination", "shoulder_incl"];
 
@@ -70,8 +70,7 @@ pub fn read_body_yaml(text: &str) -> Result<Measurements, FormatError> {
 }
 
 fn in_si(name: &str, number: f64) -> f64 {
-    let angle = DEGREES.contains(&name)
-        || definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+    let angle = DEGREES.contains(&name) || is_angle(name);
     if angle {
         number.to_radians()
     } else {

@@ -5,7 +5,7 @@ use crate::measurements_seamly::one_size;
 use crate::{FormatError, SizeChoice, read_body_yaml, read_freesewing, read_seamly};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use toile_measure::{Measurements, Origin, UnitKind, definition};
+use toile_measure::{Measurements, Origin, is_angle};
 
 const KIND: &str = "measurements";
 const VERSION: u32 = 1;
@@ -76,7 +76,7 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
     };
     let mut table = Measurements::new();
     for (name, number) in file.measurements {
-        let angle = definition(&name).is_some_and(|known| known.kind == UnitKind::Angle);
+        let angle = is_angle(&name);
         let value = if angle {
             number.to_radians()
         } else {
@@ -99,7 +99,7 @@ fn read_json(text: &str) -> Result<Measurements, FormatError> {
 /// A value that JSON cannot represent; no table has one, since all its numbers are finite.
 pub fn write_measurements(table: &Measurements) -> Result<String, FormatError> {
     let number = |name: &str, value: f64| {
-        let angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+        let angle = is_angle(name);
         let shown = if angle {
             value.to_degrees()
         } else {

@@ -14,7 +14,7 @@
 //! and in the window (`tables.rs`, new sizes).
 
 use crate::further::FURTHER;
-use crate::measurement::{Definition, angle, length};
+use crate::measurement::{Definition, UnitKind, angle, length};
 
 /// The measurement of that name or alias, if the catalogue knows it.
 pub fn definition(name: &str) -> Option<&'static Definition> {
@@ -22,6 +22,11 @@ pub fn definition(name: &str) -> Option<&'static Definition> {
     all()
         .find(|known| known.name == name)
         .or_else(|| all().find(|known| known.aliases.contains(&name)))
+}
+
+/// Whether a name or alias is that of an angle; names that the catalogue does not know are lengths.
+pub fn is_angle(name: &str) -> bool {
+    definition(name).is_some_and(|known| known.kind == UnitKind::Angle)
 }
 
 /// Every measurement the program knows, from the head down. The first 26 are those of

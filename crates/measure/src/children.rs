@@ -143,7 +143,7 @@ impl Measurements {
             .map(|(name, m)| (name, m.value));
         for (name, value) in ROWS.iter().map(|row| (row.0, 0.0)).chain(others) {
             let girth = GIRTHS.contains(&name);
-            let angle = crate::definition(name).is_some_and(|d| d.kind == crate::UnitKind::Angle);
+            let angle = crate::is_angle(name);
             let average = match known(name) {
                 Some(known) => known,
                 None if angle => value,

@@ -14,7 +14,7 @@ mod samples;
 mod survey;
 mod table;
 
-pub use catalogue::{CATALOGUE, definition};
+pub use catalogue::{CATALOGUE, definition, is_angle};
 pub use foreign::{FREESEWING, SEAMLY, translated};
 pub use further::FURTHER;
 pub use measurement::{Definition, UnitKind};

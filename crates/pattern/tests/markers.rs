@@ -93,6 +93,29 @@ fn a_marker_is_made_for_one_garment_and_renamed() {
 }
 
 #[test]
+fn a_fabric_that_a_rule_of_a_marker_names_is_not_removed() {
+    let (pattern, id) = marked();
+    let mut changed = pattern.clone();
+    let mut lining = (*changed.fabrics[0]).clone();
+    lining.id = changed.ids.take();
+    lining.name = "lining".into();
+    let lining_id = lining.id;
+    changed.fabrics.push(Arc::new(lining));
+    assert!(plan::remove_fabric(&evaluated(&changed), lining_id).is_ok());
+    let marker = changed.markers.iter_mut().find(|marker| marker.id == id);
+    let rule = PieceRule {
+        fabric: Some(lining_id),
+        ..PieceRule::default()
+    };
+    Arc::make_mut(marker.unwrap()).rules.push(rule);
+    let refused = plan::remove_fabric(&evaluated(&changed), lining_id).unwrap_err();
+    assert!(
+        refused.to_string().contains("marker \"marker\""),
+        "{refused}"
+    );
+}
+
+#[test]
 fn order_and_fabric_are_set_or_refused() {
     let (pattern, id) = marked();
     let evaluation = evaluated(&pattern);

@@ -3,7 +3,7 @@
 use super::item::Item;
 use super::json::Value;
 use crate::FormatError;
-use toile_measure::{Measurements, Origin, UnitKind, definition};
+use toile_measure::{Measurements, Origin, is_angle};
 use toile_pattern::{Diagnostic, DisplayUnit};
 
 /// Reads a table of measurements.
@@ -26,7 +26,7 @@ pub fn measurements(
         } else {
             (entry, Origin::Asked)
         };
-        let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+        let is_angle = is_angle(name);
         let number = if is_angle {
             entry.angle()?
         } else {

@@ -3,7 +3,7 @@
 use super::json::{Node, Value};
 use super::units::{write_degrees, write_length, write_plain};
 use crate::FormatError;
-use toile_measure::{Measurements, Origin, UnitKind, definition};
+use toile_measure::{Measurements, Origin, is_angle};
 use toile_pattern::{DisplayUnit, Names, Number, Pattern, Want};
 
 /// A JSON object being built.
@@ -76,7 +76,7 @@ impl Writer {
     pub fn measurements(&self, table: &Measurements) -> Value {
         let mut fields = Object::default();
         for (name, measured) in table.iter() {
-            let is_angle = definition(name).is_some_and(|known| known.kind == UnitKind::Angle);
+            let is_angle = is_angle(name);
             let number = if is_angle {
                 angle_value(measured.value)
             } else {

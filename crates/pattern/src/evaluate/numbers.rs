@@ -76,9 +76,7 @@ impl Evaluation {
         let given = self.wearer.measurements.get(name);
         let base = || self.pattern.base_measurements()?.get(name);
         let value = given.or_else(base)?;
-        let known = toile_measure::definition(name);
-        let is_angle = known.is_some_and(|known| known.kind == toile_measure::UnitKind::Angle);
-        let quantity = match is_angle {
+        let quantity = match toile_measure::is_angle(name) {
             true => Quantity::angle(value),
             false => Quantity::length(value),
         };

@@ -175,8 +175,11 @@ pub fn remove_fabric(evaluation: &Evaluation, id: FabricId) -> Result<Vec<Edit>,
     let gone = fabric(pattern, id)?;
     let panels = pattern.panels.iter().filter(|panel| panel.fabric == id);
     let panels = panels.map(|panel| format!("panel {:?}", panel.name));
-    let markers = pattern.markers.iter();
-    let markers = markers.filter(|marker| marker.fabric == id);
+    let names = |marker: &&Arc<Marker>| {
+        let part = Entity::Marker((*marker).clone());
+        part.references().contains(&id.into())
+    };
+    let markers = pattern.markers.iter().filter(names);
     let users: Vec<String> = panels
         .chain(markers.map(|marker| format!("marker {:?}", marker.name)))
         .collect();
