@@ -2,7 +2,7 @@
 
 use super::impossible;
 use super::names::free_name;
-use crate::{Edit, EditError, Entity, Evaluation, Fabric, FabricId, Pattern, is_part_name};
+use crate::{Edit, EditError, Entity, Evaluation, Fabric, FabricId, Marker, Pattern, is_part_name};
 use std::sync::Arc;
 use toile_fabric::Component;
 
