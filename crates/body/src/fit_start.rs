@@ -117,8 +117,8 @@ fn hand(to: &Side) -> Vec<Primitive> {
     .into()
 }
 
-/// Primitives of a leg: pairs along it, alternately one before the other and side by side, and some for the
-/// foot.
+/// Ellipsoids that a leg is made of: pairs from hip to ankle, in turn a front and a back one and an inner and
+/// an outer one; and some for the foot.
 fn leg(to: &Side) -> Vec<Primitive> {
     let bones = to.bones(Part::LeftLeg);
     let height = to.frame.height;

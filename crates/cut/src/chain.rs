@@ -10,8 +10,8 @@ pub(crate) struct Tag {
     /// Number of the edge in the ring.
     pub edge: usize,
     pub kind: SegmentKind,
-    /// The chord that the side runs along, and the start and end of the side on that chord (shares of the
-    /// chord's length). `None`: the side runs along no chord.
+    /// Index of the chord of the flattened edge that the side is parallel to, and the start and end of the
+    /// side along that chord (shares of its length). `None` for a side at a corner, which follows no chord.
     pub beside: Option<(usize, [f64; 2])>,
 }
 

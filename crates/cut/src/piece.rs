@@ -310,7 +310,8 @@ impl CutPiece {
         found.map(|text| &*text.text)
     }
 
-    /// Width of the allowance asked for beside an edge (m); `index` is the number of the edge in findings.
+    /// Width of the allowance asked for along an edge (m): `index` numbers the edge as faults of the cut line
+    /// do. `None` if the piece has no such edge.
     pub(crate) fn width(&self, index: EdgeIndex) -> Option<f64> {
         self.widths.get(index.ring)?.get(index.edge).copied()
     }

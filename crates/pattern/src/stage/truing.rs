@@ -23,7 +23,7 @@ pub(crate) const KINK: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// Turn between edges with different names above which they form a corner, so that neither continues the
 /// other (rad).
 pub(crate) const CORNER: f64 = std::f64::consts::PI / 6.0;
-/// Largest difference between shares of an edge that count as equal (1).
+/// Largest difference between two places on an edge, as shares of its length, that count as one place (1).
 const SAME_SHARE: f64 = 1e-9;
 
 /// A row of darts, as in [`Row`], by indices of the edges of the outline.
