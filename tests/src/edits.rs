@@ -108,10 +108,7 @@ impl Hung {
     pub fn new(pattern: &str, quality: Quality) -> Result<Self, String> {
         let path: PathBuf = root().join("patterns").join(pattern);
         let mut session = Session::new();
-        for command in [
-            Command::OpenPattern { path },
-            Command::SetQuality { quality },
-        ] {
+        for command in [Command::open(path), Command::SetQuality { quality }] {
             session.execute(command, &mut Silent).map_err(words)?;
         }
         let job = session.garment_setup().map_err(words)?;

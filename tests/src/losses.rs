@@ -79,7 +79,7 @@ pub fn losses(seed: u64, folder: &Path) -> Result<(), String> {
     let (path, name) = SAMPLES[seed as usize % SAMPLES.len()];
     let mut session = Session::new();
     let path = PathBuf::from(path);
-    run(&mut session, Command::OpenPattern { path })?;
+    run(&mut session, Command::open(path))?;
     let first = State::of(&mut session)?;
     let mut done = 0;
     while done < CHANGES {

@@ -33,10 +33,7 @@ fn swinging() -> GarmentRun {
     let path = root().join("patterns/t-shirt.toile.json");
     let mut session = Session::new();
     let quality = Quality::Preview;
-    for command in [
-        Command::OpenPattern { path },
-        Command::SetQuality { quality },
-    ] {
+    for command in [Command::open(path), Command::SetQuality { quality }] {
         session.execute(command, &mut Silent).unwrap();
     }
     let mut run = GarmentRun::new(session.garment_setup().unwrap().setup).unwrap();

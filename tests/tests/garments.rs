@@ -19,7 +19,7 @@ fn check(path: PathBuf, size: Option<&str>) {
         size: Some(name.to_owned()),
     });
     let commands = [
-        Some(Command::OpenPattern { path }),
+        Some(Command::open(path)),
         size,
         Some(Command::SetQuality {
             quality: Quality::Preview,
@@ -112,9 +112,7 @@ fn shipped_patterns_are_worn_over_one_another() {
     };
     let mut session = Session::new();
     for command in [
-        Command::OpenPattern {
-            path: path("trousers"),
-        },
+        Command::open(path("trousers")),
         Command::SetLayers {
             layer: 1,
             others: vec![over("t-shirt", 2), over("poncho", 3)],

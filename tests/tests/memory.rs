@@ -54,7 +54,7 @@ fn step(session: &mut Session, random: &mut Random) {
 fn a_full_history_takes_no_more_memory_as_work_goes_on() {
     let mut session = Session::new();
     let path = PathBuf::from(SAMPLES[0].0);
-    run(&mut session, Command::OpenPattern { path });
+    run(&mut session, Command::open(path));
     let mut random = Random(1);
     let mut used = Vec::new();
     for number in 1..=3 * KEPT {

@@ -55,7 +55,7 @@ fn shipped_patterns_follow_moves_of_a_few_millimetres() {
     let mut random = Random(36);
     for (path, _) in SAMPLES {
         let mut session = Session::new();
-        let open = Command::OpenPattern { path: path.into() };
+        let open = Command::open(path);
         session.execute(open, &mut Silent).unwrap();
         let before = session.draft();
         let meshes = mesh_pieces(&before, Quality::Fit.edge_length()).unwrap();

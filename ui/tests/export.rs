@@ -91,7 +91,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     assert_eq!(formats.len(), BOXES.len());
     let mut session = Session::new();
     let commands = [
-        Command::OpenPattern { path: file },
+        Command::open(file),
         Command::SetQuality {
             quality: Quality::Preview,
         },
@@ -146,7 +146,7 @@ fn a_garment_that_hangs_in_the_window_is_exported_as_the_command_line_hangs_it()
     let made = folder.path().join("made");
     let quality = Quality::Preview;
     let commands = [
-        Command::OpenPattern { path: file },
+        Command::open(file),
         Command::SetQuality { quality },
         Command::drape(),
         Command::export(&made),
@@ -270,9 +270,7 @@ fn a_marker_that_no_format_shows_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let mut session = Session::new();
     let path = garments::band(folder.path());
-    session
-        .execute(Command::OpenPattern { path }, &mut Silent)
-        .unwrap();
+    session.execute(Command::open(path), &mut Silent).unwrap();
     let export = Export {
         dir: folder.path().join("out"),
         formats: vec![ExportFormat::PiecesSvg, ExportFormat::Glb],

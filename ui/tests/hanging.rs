@@ -69,10 +69,7 @@ fn a_moved_point_moves_the_garment_that_hangs_and_what_is_exported_is_made_from_
     let mut session = window.state().session().snapshot();
     let mut made = Session::new();
     let quality = Quality::Preview;
-    for command in [
-        Command::OpenPattern { path: file },
-        Command::SetQuality { quality },
-    ] {
+    for command in [Command::open(file), Command::SetQuality { quality }] {
         made.execute(command, &mut Silent).unwrap();
     }
     let [here, there] = ["here", "there"].map(|name| folder.path().join(name));

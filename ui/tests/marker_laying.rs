@@ -89,7 +89,7 @@ fn undo(window: &mut Window) {
 /// The pattern of a file.
 fn opened(path: &Path) -> Arc<Pattern> {
     let mut session = Session::new();
-    let open = Command::OpenPattern { path: path.into() };
+    let open = Command::open(path);
     let told = session.execute(open, &mut Silent).unwrap();
     let warned =
         |event: &toile_session::Event| matches!(event, toile_session::Event::Warned { .. });

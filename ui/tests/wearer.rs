@@ -78,9 +78,7 @@ fn is_kept(drafter: &mut Drafter, (before, file): (&Project, &Path)) {
     drafter.chord(Modifiers::COMMAND, Key::S);
     assert!(!drafter.window.state().is_unsaved(), "{}", drafter.status());
     let mut again = Session::new();
-    let open = Command::OpenPattern {
-        path: file.to_owned(),
-    };
+    let open = Command::open(file);
     again.execute(open, &mut Silent).unwrap();
     assert_eq!(seen(again.project(), folder), seen(&after, folder));
     assert!(!again.is_unsaved());

@@ -19,12 +19,13 @@
 use crate::body_options::{BodyOptions, StanceOptions};
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
-use crate::values::{blend, export_format, one_size, panel_origin, sizes};
+use crate::read_options::ReadArguments;
+use crate::values::{blend, export_format, one_size, panel_origin, sizes, word};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Command, Export, ExportFormat, OtherGarment, PanelOrigin, PatternFormat, PictureTime, Quality,
+    Command, Export, ExportFormat, Format, OtherGarment, PanelOrigin, PictureTime, Quality,
     SizeSelection,
 };
 
@@ -348,7 +349,7 @@ impl Make {
             commands.push(Command::SetOrigin { origin });
         }
         if let Some(OtherGarment { path, layer }) = garments.next() {
-            commands.push(Command::OpenPattern { path });
+            commands.push(Command::open(path));
             let others: Vec<OtherGarment> = garments.collect();
             if !others.is_empty() {
                 commands.push(Command::SetLayers { layer, others });
@@ -406,7 +407,7 @@ pub fn body_command(text: &str) -> Command {
 /// `toile check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// Patterns, native or GarmentCode; or marker.json files: their overlaps, gaps, margins, nap and
+    /// Patterns of any format that is read; or marker.json files: their overlaps, gaps, margins, nap and
     /// flaws as they stand. Each file gets its own verdict.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
@@ -414,6 +415,11 @@ pub struct Check {
     /// all, with the pieces of the size that the file keeps, else of the base size.
     #[arg(long, value_name = "NAMES", value_parser = sizes)]
     pub size: Option<SizeSelection>,
+    /// Check all sizes, as --size all does.
+    #[arg(long, conflicts_with = "size")]
+    pub all_sizes: bool,
+    #[command(flatten)]
+    pub read: ReadArguments,
     /// Folder for the drawing of a marker, where what is cut twice is red.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -501,34 +507,25 @@ pub struct Body {
     pub out: PathBuf,
 }
 
-/// Formats of patterns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FormatName {
-    /// Toile's own format.
-    Native,
-    /// GarmentCode specification.
-    Garmentcode,
-}
-
-impl From<FormatName> for PatternFormat {
-    fn from(name: FormatName) -> Self {
-        match name {
-            FormatName::Native => Self::Native,
-            FormatName::Garmentcode => Self::GarmentCode,
-        }
-    }
-}
-
 /// `toile convert`.
 #[derive(Debug, Args)]
 pub struct Convert {
     /// The pattern to read; its format is seen from its content.
     pub input: PathBuf,
-    /// The file to write: NAME.toile.json, or NAME.json for GarmentCode.
+    /// The file to write; its ending says the format: NAME.toile.json, or NAME.json for GarmentCode.
     pub output: PathBuf,
-    /// Format to write. Default: native if the name ends in .toile.json, else GarmentCode.
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub to: Option<FormatName>,
+    /// Format to write, in place of the one that the name ends in.
+    #[arg(long, value_name = "FORMAT", value_parser = word::<Format>())]
+    pub to: Option<Format>,
+    #[command(flatten)]
+    pub read: ReadArguments,
+    /// Sizes to write in a format that holds shapes, as in S,M; or all. Default: the size that the file keeps, else the
+    /// base size.
+    #[arg(long, value_name = "NAMES", value_parser = sizes)]
+    pub size: Option<SizeSelection>,
+    /// Write all sizes, as --size all does.
+    #[arg(long, conflicts_with = "size")]
+    pub all_sizes: bool,
     /// Point of the body that the input places its panels round: auto, floor, waist, pelvis, or its height above the
     /// floor, as in 90cm. They are written as they stand on the floor.
     #[arg(long, value_name = "POINT", default_value = "auto", value_parser = panel_origin)]

@@ -7,7 +7,7 @@ use crate::session_commands::warnings;
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_session::{
-    Command, Event, Session, Severity, SizeSelection, SizedDiagnostic, is_marker_file,
+    Choice, Command, Event, Session, Severity, SizeSelection, SizedDiagnostic, is_marker_file,
     judge_marker_file, piece_facts, seam_facts,
 };
 
@@ -72,6 +72,7 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     let mut session = Session::new();
     let mut commands = vec![Command::OpenPattern {
         path: path.to_owned(),
+        options: check.read.options(),
     }];
     // Pieces are told in numbers of the first size that was asked for.
     if let Some(SizeSelection::Named(names)) = &check.size {
@@ -86,8 +87,12 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
         true => SizeSelection::Base,
         false => SizeSelection::All,
     };
+    let asked = match check.all_sizes {
+        true => Some(&SizeSelection::All),
+        false => check.size.as_ref(),
+    };
     let found = session
-        .diagnostics_by_size(Some(check.size.as_ref().unwrap_or(&usual)))
+        .diagnostics_by_size(Some(asked.unwrap_or(&usual)))
         .map_err(|error| Failure::from(error).about(path))?;
     let errors = count_of(&found, Severity::Error);
     events.push(Event::Checked {
@@ -97,6 +102,10 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     events.extend(found.iter().map(|sized| Event::Warned {
         message: format!("{}: {sized}", path.display()),
     }));
+    let read = events.iter().find_map(|event| match event {
+        Event::FileRead(found) => Some(found.clone()),
+        _ => None,
+    });
     let place = |place| session.project().pattern.describe(place);
     let listed: Vec<Value> = found
         .iter()
@@ -134,7 +143,11 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     let report = json!({
         "format": "toile-check",
         "version": 1,
+        "read_as": read.as_ref().map(|read| read.format.word()),
+        "guesses": read.as_ref().map_or(&[][..], |read| &read.guesses),
+        "lost": read.as_ref().map_or(&[][..], |read| &read.losses),
         "pattern": project.pattern.name,
+        "sizes": project.pattern.sizes.iter().map(|size| &size.name).collect::<Vec<_>>(),
         "size": project.size_name(),
         "pieces": pieces,
         "seams": seams,

@@ -8,12 +8,14 @@ mod arguments;
 mod bar;
 mod body_options;
 mod check_commands;
+mod convert_command;
 mod lab_commands;
 mod nest_arguments;
 mod nest_commands;
 mod output;
 mod print_arguments;
 mod print_commands;
+mod read_options;
 mod session_commands;
 mod tool_commands;
 mod values;
@@ -55,7 +57,7 @@ fn run(task: Task, output: &Output) -> Result<Made, Failure> {
         Task::Drape(drape) => return session_commands::drape(&drape, output),
         Task::Check(check) => check_commands::check(&check, output),
         Task::Replay(replay) => return session_commands::replay(&replay, output),
-        Task::Convert(convert) => tool_commands::convert(&convert, output),
+        Task::Convert(convert) => convert_command::convert(&convert, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
         Task::Print(print) => print_commands::print(&print, output),
         Task::Nest(nest) => nest_commands::nest(&nest, output),

@@ -267,7 +267,10 @@ fn words(event: &Event) -> Option<String> {
             };
             Some(paths.iter().map(line).collect::<Vec<_>>().join("\n"))
         }
-        Event::PatternOpened | Event::ProjectChanged { .. } | Event::Warned { .. } => None,
+        Event::PatternOpened
+        | Event::FileRead(_)
+        | Event::ProjectChanged { .. }
+        | Event::Warned { .. } => None,
     }
 }
 

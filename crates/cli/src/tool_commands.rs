@@ -1,6 +1,6 @@
 //! Commands that need no session.
 
-use crate::arguments::{Body, Convert, FramesTask, Mesh, Run};
+use crate::arguments::{Body, FramesTask, Mesh, Run};
 use crate::bar::Bar;
 use crate::output::{Failure, Made, Output, count};
 use serde_json::{Value, json};
@@ -10,22 +10,10 @@ use toile_geometry::Duration;
 use toile_measure::Origin;
 use toile_session::{
     AskedStance, BodyChoice, BodyReport, BodySource, Description, Figure, Fit, FramesExport,
-    Moment, PersonFile, PictureOptions, Project, RunOptions, SizeChoice, convert as convert_file,
-    edit_body, export_frames, figure_named, fit_mesh, make_body, measure_mesh, mesh_panels,
-    open_body_edits, open_mannequin, open_measurements, run_scene, stretch_body,
+    Moment, PersonFile, PictureOptions, Project, RunOptions, SizeChoice, edit_body, export_frames,
+    figure_named, fit_mesh, make_body, measure_mesh, mesh_panels, open_body_edits, open_mannequin,
+    open_measurements, run_scene, stretch_body,
 };
-
-/// A pattern in another format.
-pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
-    let format = convert.to.map(Into::into);
-    let lost = convert_file(&convert.input, &convert.output, format, convert.origin)
-        .map_err(|error| Failure::from(error).about(&convert.input))?;
-    for note in &lost {
-        output.say(format!("not carried over or assumed: {note}"));
-    }
-    output.say(format!("wrote {}", convert.output.display()));
-    Ok(json!({ "files": [convert.output], "not_carried_over": lost }))
-}
 
 /// Triangulated panels.
 pub fn mesh(mesh: &Mesh, output: &Output) -> Result<Value, Failure> {

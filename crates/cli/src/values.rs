@@ -105,6 +105,14 @@ fn choice<T: Choice + Send + Sync + 'static>(
     })
 }
 
+/// One of the words of a closed list.
+pub fn word<T: Choice + Send + Sync + 'static>() -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(T::words()).try_map(|word| {
+        let found = T::all().iter().find(|choice| choice.word() == word);
+        found.copied().ok_or("it is not known")
+    })
+}
+
 /// Which way pieces may point.
 pub fn nap() -> impl TypedValueParser<Value = NapRule> {
     choice(&[

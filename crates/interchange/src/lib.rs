@@ -10,8 +10,10 @@ mod atomic;
 mod bvh;
 mod character_json;
 mod checkpoint;
+mod drawn;
 mod dxf;
 mod error;
+mod exchange;
 mod fabric_file;
 mod fabric_test;
 mod frames;
@@ -39,6 +41,7 @@ mod mesh_read;
 mod native;
 mod obj;
 mod obj_read;
+mod part_names;
 mod pc2;
 mod pdf;
 mod pdf_fonts;
@@ -64,6 +67,10 @@ pub use bvh::read_bvh;
 pub use character_json::{read_character, write_character};
 pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
+pub use exchange::{
+    Companion, Content, Format, Guess, Loss, ReadOptions, Reading, SizedDraft, WriteSource,
+    Writing, Written, read, write,
+};
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};
 pub use frames::{

@@ -5,13 +5,13 @@
 //! - [`crate::recognise::FileKind`], [`crate::recognise::ExpectedKind`]: kinds of files, and who takes which;
 //! - [`crate::mesh_read::read_mesh`], [`crate::measurements_foreign::looks_like_freesewing`]: meshes and
 //!   tables told apart;
+//! - [`crate::exchange::Format`]: kinds that are patterns;
 //! - [`crate::error::FormatError`]: refusals in words.
 //!
 //! The compiler asks a new kind for its name, remedy and who takes it. By hand: how it is seen from its first
-//! bytes, XML, JSON or lines; wrong uses in `tests/wrong-uses/table.toml`. Formats of patterns: crate
-//! `session`, `open.rs`.
+//! bytes, XML, JSON or lines; wrong uses in `tests/wrong-uses/table.toml`.
 
-use crate::FormatError;
+use crate::{Format, FormatError};
 use serde_json::{Map, Value};
 
 /// A kind of file that can be told from its content.
@@ -85,7 +85,8 @@ impl FileKind {
     /// The kind of a file; `None` if the content does not tell.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         of_magic(bytes).or_else(|| {
-            let text = std::str::from_utf8(bytes).ok()?;
+            // Other programs write texts in the encodings of their countries, too.
+            let text = String::from_utf8_lossy(bytes);
             let text = text.trim_start_matches('\u{feff}').trim_start();
             match text.chars().next() {
                 None => Some(Self::Empty),
@@ -239,7 +240,7 @@ pub enum ExpectedKind {
 impl ExpectedKind {
     fn takes(self, kind: FileKind) -> bool {
         match self {
-            Self::Pattern => matches!(kind, FileKind::Pattern | FileKind::GarmentCode),
+            Self::Pattern => Format::of_kind(kind).is_some(),
             Self::Measurements => kind == FileKind::Measurements,
             Self::Mannequin => kind == FileKind::Mannequin,
             Self::Mesh => matches!(kind, FileKind::Obj | FileKind::Ply),
@@ -255,11 +256,9 @@ impl ExpectedKind {
     }
 
     /// The formats that this kind of reader supports, for the remedy.
-    fn reads(self) -> &'static str {
-        match self {
-            Self::Pattern => {
-                "patterns are read from *.toile.json and from GarmentCode specifications (JSON)"
-            }
+    fn reads(self) -> String {
+        let words = match self {
+            Self::Pattern => return format!("patterns are read from {}", Format::read_words()),
             Self::Measurements => {
                 "measurements are read from JSON, GarmentCode YAML, .smis, .smms, .vit, .vst and FreeSewing JSON"
             }
@@ -275,7 +274,8 @@ impl ExpectedKind {
             Self::Journal => "journals are read from journal.jsonl, one command a line",
             Self::Fabric => "fabrics are read from JSON or CSV, see docs/FORMATS.md",
             Self::SmallJson => "this is read from JSON, see docs/FORMATS.md",
-        }
+        };
+        words.to_owned()
     }
 
     /// Refuses content that is clearly of another kind, and names that kind. Damaged or unrecognised content
@@ -293,7 +293,7 @@ impl ExpectedKind {
         };
         let hint = match kind.taken_by().or(kind.remedy()) {
             Some(remedy) => format!("{remedy}; {}", self.reads()),
-            None => self.reads().to_owned(),
+            None => self.reads(),
         };
         Err(FormatError::new("the whole file", what, hint))
     }
@@ -487,12 +487,14 @@ mod tests {
     #[test]
     fn a_file_of_another_kind_is_refused_by_its_name_with_what_is_read() {
         let error = ExpectedKind::Pattern
-            .check(b"0\nSECTION\n")
-            .expect_err("a drawing");
+            .check(b"%PDF-1.7\n")
+            .expect_err("a PDF");
         assert_eq!(
             error.to_string(),
-            "the whole file: this is a DXF drawing, which is not read yet; patterns are read from \
-             *.toile.json and from GarmentCode specifications (JSON)"
+            format!(
+                "the whole file: this is a PDF, which is not read yet; patterns are read from {}",
+                Format::read_words()
+            )
         );
         let error = ExpectedKind::Pattern
             .check(br#"{"objects": []}"#)

@@ -345,7 +345,7 @@ pub(crate) fn drag(result: &mut Timed) -> Result<(), LabError> {
     let mut all = vec![measured("large", command, LARGE_STRIDE)?];
     for (path, name) in SAMPLES {
         let path = PathBuf::from(path);
-        all.push(measured(name, Command::OpenPattern { path }, 1)?);
+        all.push(measured(name, Command::open(path), 1)?);
     }
     let mut text = heading();
     for found in &all {

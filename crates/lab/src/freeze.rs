@@ -293,9 +293,7 @@ fn shirt(files: &mut Vec<File>) -> Result<(), LabError> {
     let title = "a T-shirt, just sewn, settles on a mannequin";
     let mut session = Session::new();
     let commands = [
-        Command::OpenPattern {
-            path: toile_session::SAMPLE.into(),
-        },
+        Command::open(toile_session::SAMPLE),
         Command::SetQuality {
             quality: Quality::Preview,
         },

@@ -19,7 +19,7 @@
 //! `weight`; a command that opens a pattern in `execute`; `follow`.
 
 use crate::interactive_run::read_inputs;
-use crate::{Export, PanelOrigin, PastStep, Quality};
+use crate::{Export, OpenOptions, PanelOrigin, PastStep, Quality};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use strum::IntoStaticStr;
@@ -44,6 +44,9 @@ pub enum Command {
     OpenPattern {
         /// The file.
         path: PathBuf,
+        /// How it is read.
+        #[serde(default, skip_serializing_if = "OpenOptions::is_empty")]
+        options: OpenOptions,
     },
     /// Sets the origin that the panels of pattern files opened from now on are placed round: a point of the
     /// body.
@@ -174,6 +177,8 @@ pub struct OtherGarment {
 enum NamedFiles<'a> {
     /// A file or folder that is written.
     Output(&'a mut PathBuf),
+    /// A pattern and the files that belong to it, which are read.
+    Pattern(&'a mut PathBuf, &'a mut [PathBuf]),
     /// A file that is read. `None`: no file is read.
     Input(Option<&'a mut PathBuf>),
     /// Garments, whose patterns are read.
@@ -183,6 +188,14 @@ enum NamedFiles<'a> {
 }
 
 impl Command {
+    /// Opens a pattern file in the format that its content shows.
+    pub fn open(path: impl Into<PathBuf>) -> Self {
+        Self::OpenPattern {
+            path: path.into(),
+            options: OpenOptions::default(),
+        }
+    }
+
     /// Sews the garment and drapes it to rest with nobody touching it.
     pub fn drape() -> Self {
         Self::Drape { inputs: Vec::new() }
@@ -198,7 +211,7 @@ impl Command {
         match self {
             Self::SavePattern { path } | Self::SaveBody { path } => NamedFiles::Output(path),
             Self::Export(export) => NamedFiles::Output(&mut export.dir),
-            Self::OpenPattern { path } => NamedFiles::Input(Some(path)),
+            Self::OpenPattern { path, options } => NamedFiles::Pattern(path, &mut options.with),
             Self::SetBody { measurements, .. } => NamedFiles::Input(measurements.as_mut()),
             Self::SetLayers { others, .. } => NamedFiles::Garments(others),
             Self::SetFabric { fabric } => NamedFiles::Fabric(fabric.as_mut()),
@@ -224,13 +237,20 @@ impl Command {
     pub(crate) fn output_mut(&mut self) -> Option<&mut PathBuf> {
         match self.files() {
             NamedFiles::Output(path) => Some(path),
-            NamedFiles::Input(_) | NamedFiles::Garments(_) | NamedFiles::Fabric(_) => None,
+            NamedFiles::Pattern(..)
+            | NamedFiles::Input(_)
+            | NamedFiles::Garments(_)
+            | NamedFiles::Fabric(_) => None,
         }
     }
 
     /// Passes every file that the command reads to `take`.
     pub(crate) fn each_input(&mut self, take: &mut dyn FnMut(&mut PathBuf)) {
         match self.files() {
+            NamedFiles::Pattern(path, with) => {
+                take(path);
+                with.iter_mut().for_each(take);
+            }
             NamedFiles::Input(path) => path.into_iter().for_each(take),
             NamedFiles::Garments(others) => others.iter_mut().for_each(|o| take(&mut o.path)),
             NamedFiles::Fabric(Some(name)) => {

@@ -102,9 +102,7 @@ impl DressedFigure {
         let named = figure_named(body);
         let mut notes = Vec::new();
         for command in [
-            Command::OpenPattern {
-                path: of_base(first.pattern),
-            },
+            Command::open(of_base(first.pattern)),
             Command::SetBody {
                 figure: named,
                 measurements: named.is_none().then(|| of_base(body)),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use toile_drape::Verdict;
+use toile_interchange::{Format, Guess, Loss};
 use toile_marker::MarkerSummary;
 
 /// Something that happened while a command was done.
@@ -9,6 +10,8 @@ use toile_marker::MarkerSummary;
 pub enum Event {
     /// A pattern was read.
     PatternOpened,
+    /// A pattern file was read; its notes are warnings of their own.
+    FileRead(FoundInFile),
     /// The project has changed.
     ProjectChanged {
         /// Number of the new state of the project; it only grows.
@@ -37,6 +40,17 @@ pub enum Event {
         /// The fault, its place and its remedy, in plain words.
         message: String,
     },
+}
+
+/// What reading a pattern file found out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FoundInFile {
+    /// The format.
+    pub format: Format,
+    /// Decisions on what the file leaves open.
+    pub guesses: Vec<Guess>,
+    /// Contents that were left out.
+    pub losses: Vec<Loss>,
 }
 
 impl Event {

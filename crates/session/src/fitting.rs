@@ -2,17 +2,27 @@
 //! that it refers to are named from the pattern's folder, so that they can be moved together.
 
 use crate::bodies::mannequin_of;
+use crate::event::FoundInFile;
 use crate::fabrics::{fabric_of_file, is_known_fabric};
 use crate::input::{is_input, is_pipe};
 use crate::open::{is_sample, open_pattern_from};
 use crate::paths::{relative, resolved};
 use crate::placed_panels::PanelOrigin;
-use crate::{BodyChoice, FabricChoice, Project, SessionError, WornGarment};
+use crate::{BodyChoice, FabricChoice, OpenOptions, Project, SessionError, WornGarment};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_interchange::{
     Fitting, FittingFabric, FittingLayer, FittingWearer, FormatError, write_document,
 };
+
+/// A pattern file opened as a project.
+pub(crate) struct OpenedProject {
+    pub project: Project,
+    /// Notes on contents that were left out, taken for granted or are missing.
+    pub notes: Vec<String>,
+    /// The format, with guesses and losses by themselves.
+    pub found: FoundInFile,
+}
 
 impl Project {
     /// Opens a pattern file as a project, with the fitting that the file says; also returns notes on
@@ -21,24 +31,43 @@ impl Project {
     /// # Errors
     /// The file is missing or cannot be read, or holds no pattern.
     pub fn open(path: &Path) -> Result<(Self, Vec<String>), SessionError> {
-        Self::open_from(path, PanelOrigin::Automatic)
+        let opened = Self::open_from(path, PanelOrigin::Automatic, &OpenOptions::default())?;
+        Ok((opened.project, opened.notes))
     }
 
-    /// Opens a pattern file whose panels are placed round an origin.
+    /// Opens a pattern file as options say, with its panels placed round an origin.
     pub(crate) fn open_from(
         path: &Path,
         origin: PanelOrigin,
-    ) -> Result<(Self, Vec<String>), SessionError> {
-        let opened = open_pattern_from(path, origin)?;
+        options: &OpenOptions,
+    ) -> Result<OpenedProject, SessionError> {
+        let opened = open_pattern_from(path, origin, options)?;
+        let mut notes = opened.words();
+        let found = FoundInFile {
+            format: opened.format,
+            guesses: opened.guesses,
+            losses: opened.losses,
+        };
         let mut project = Self {
             pattern: Arc::new(opened.pattern),
             source: Some(path.to_owned()),
             ..Self::default()
         };
-        let mut notes = opened.notes;
         notes.extend(try_on(&mut project, opened.fitting, origin));
-        Ok((project, notes))
+        Ok(OpenedProject {
+            project,
+            notes,
+            found,
+        })
     }
+}
+
+/// Fitting of a project's garment, for a file at a place.
+///
+/// # Errors
+/// The name of a file that is worn or measured is not text.
+pub(crate) fn fitting_beside(project: &Project, place: &Path) -> Result<Fitting, FormatError> {
+    fitting_of(project, folder_of(Some(place)))
 }
 
 /// Text of a project's file, with paths relative to the folder of `place`; absolute paths if `place` is
@@ -180,13 +209,13 @@ pub(crate) fn try_on(project: &mut Project, fitting: Fitting, origin: PanelOrigi
     for FittingLayer { file, layer } in fitting.worn_with {
         let path = found(&file);
         let pattern = match refuse_itself(project, &path) {
-            Ok(()) => open_pattern_from(&path, origin),
+            Ok(()) => open_pattern_from(&path, origin, &OpenOptions::default()),
             Err(error) => Err(error),
         };
         let pattern = match pattern {
             Ok(opened) => {
                 let note = |note| format!("{}: {note}", path.display());
-                notes.extend(opened.notes.into_iter().map(note));
+                notes.extend(opened.words().into_iter().map(note));
                 Some(Arc::new(opened.pattern))
             }
             Err(error) => {

@@ -10,6 +10,7 @@ mod bodies;
 mod choice;
 mod clips;
 mod command;
+mod convert;
 mod crossings;
 mod crumple;
 mod derived;
@@ -83,9 +84,10 @@ mod watcher;
 pub use bodies::{edit_body, open_body_edits, proportions_named, proportions_of_heads};
 pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::{Command, OtherGarment};
+pub use convert::{ConvertOptions, Converted, convert};
 pub use drape::DrapeResult;
 pub use error::SessionError;
-pub use event::{Assembled, Draped, Event};
+pub use event::{Assembled, Draped, Event, FoundInFile};
 pub use export_format::{Export, ExportFormat};
 pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
 pub use frames_export::{FramesExport, FramesOutcome, export_frames};
@@ -101,8 +103,8 @@ pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use markers::{FoundMarker, MarkerSearch, kept_words, other_sizes_words};
 pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
-    Opened, PatternFormat, SAMPLE, SAMPLES, open_mannequin, open_marker, open_measurements,
-    open_pattern, read_input, read_pattern_text,
+    OpenOptions, SAMPLE, SAMPLES, open_mannequin, open_marker, open_measurements, open_pattern,
+    read_input, read_pattern_text,
 };
 pub use outfit::GarmentPart;
 pub use piece_facts::{
@@ -131,7 +133,8 @@ pub use toile_body::{
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::{Aspect, Finding, Stage, Verdict};
 pub use toile_interchange::{
-    ExpectedKind, Lines, MarkerSettings, Paper, Shown, SizeChoice, Tile, write_atomically,
+    ExpectedKind, Format, Guess, Lines, Loss, MarkerSettings, Paper, ReadOptions, Reading, Shown,
+    SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
     DocumentMarker, Found, GivenFlaw, LaidPiece, LetGo, MarkerError, MarkerFormat, MarkerState,
@@ -139,10 +142,11 @@ pub use toile_marker::{
     SearchWatcher, Start, WaitingPiece,
 };
 pub use toile_nesting::{Budget, Pose, Search, Side, Strip};
+pub use toile_pattern::DisplayUnit;
 pub use toile_pattern::fields::Choice;
 pub use toile_pattern::{ClothSettings, NapRule, Print, Roll, Severity, SizeSelection, Spread};
 pub use tools::{
-    BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, PersonFile, convert, fit_mesh,
-    make_body, measure_mesh, mesh_panels, stretch_body,
+    BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, PersonFile, fit_mesh, make_body,
+    measure_mesh, mesh_panels, stretch_body,
 };
 pub use watcher::{Silent, Watcher};

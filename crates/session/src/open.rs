@@ -2,27 +2,23 @@
 //!
 //! # Decided with
 //! - [`toile_interchange::FileKind`], [`crate::input::read_file`]: kinds of files; pipes and standard input;
-//! - [`toile_interchange::read_document`], [`toile_interchange::read_garmentcode`]: formats of patterns;
-//! - [`crate::tools::convert`]: formats that are written, by ending;
+//! - [`toile_interchange::read`], [`toile_interchange::Format`]: patterns read; formats of patterns;
+//! - [`crate::convert`]: patterns written;
 //! - [`crate::stored_marker::nest_marker`]: markers are stored in Toile's own format alone;
 //! - [`crate::mesh_file::open_mesh`], [`crate::bodies::body_of`]: meshes; files of bodies;
 //! - [`crate::fitting::files_to_try_on`]: files that a pattern names.
-//!
-//! By hand: a new format in `looks_like_garmentcode` and `read_pattern_text`, in crate `cli` (`arguments.rs`,
-//! `FormatName`) and in the window (`app/file_choice.rs`). The window saves Toile's own format alone
-//! (`app/files.rs`).
 
 use crate::SessionError;
 use crate::input::{is_pipe, read_file};
 use crate::placed_panels::PanelOrigin;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_body::Description;
 use toile_interchange::{
-    ExpectedKind, FileError, Fitting, FormatError, MarkerFile, SizeChoice, read_document,
-    read_garmentcode, read_mannequin, read_marker_json, read_sized_measurements,
+    ExpectedKind, FileError, FormatError, MarkerFile, ReadOptions, Reading, SizeChoice, read,
+    read_mannequin, read_marker_json, read_sized_measurements,
 };
 use toile_measure::Measurements;
-use toile_pattern::Pattern;
 
 /// The path that stands for the sample pattern inside the program.
 pub const SAMPLE: &str = "sample:t-shirt";
@@ -57,26 +53,23 @@ fn sample(path: &Path) -> Option<&'static str> {
     SAMPLE_TEXTS.get(at).copied()
 }
 
-/// Formats of patterns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PatternFormat {
-    /// Toile's own format.
-    Native,
-    /// A GarmentCode specification.
-    GarmentCode,
+/// How a pattern file is read: answers to what it leaves open, and the files that belong to it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OpenOptions {
+    /// Answers to what the file leaves open.
+    #[serde(flatten)]
+    pub reading: ReadOptions,
+    /// Files that belong to the pattern: a table of grade rules, or of measurements.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub with: Vec<PathBuf>,
 }
 
-/// A pattern read from a file.
-#[derive(Clone, Debug)]
-pub struct Opened {
-    /// The pattern.
-    pub pattern: Pattern,
-    /// Fitting of the garment.
-    pub fitting: Fitting,
-    /// Format of the file.
-    pub format: PatternFormat,
-    /// Notes on parts that were left out or assumed, with their places.
-    pub notes: Vec<String>,
+impl OpenOptions {
+    /// Whether nothing is said beside the file.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// Reads a pattern file. A pattern without a name is named after its file; panels that the file plainly
@@ -84,20 +77,24 @@ pub struct Opened {
 ///
 /// # Errors
 /// The file cannot be read, or is not a pattern.
-pub fn open_pattern(path: &Path) -> Result<Opened, SessionError> {
-    open_pattern_from(path, PanelOrigin::Automatic)
+pub fn open_pattern(path: &Path) -> Result<Reading, SessionError> {
+    open_pattern_from(path, PanelOrigin::Automatic, &OpenOptions::default())
 }
 
-/// Reads a pattern file whose panels are placed round an origin: see [`open_pattern`].
+/// Reads a pattern file as options say, with its panels placed round an origin: see [`open_pattern`].
 ///
 /// # Errors
-/// Those of [`open_pattern`].
-pub(crate) fn open_pattern_from(path: &Path, origin: PanelOrigin) -> Result<Opened, SessionError> {
-    let text = match sample(path) {
-        Some(text) => text.to_owned(),
-        None => read_input(path, ExpectedKind::Pattern)?,
+/// Those of [`open_pattern`]; an option that the format has no use for.
+pub(crate) fn open_pattern_from(
+    path: &Path,
+    origin: PanelOrigin,
+    options: &OpenOptions,
+) -> Result<Reading, SessionError> {
+    let bytes = match sample(path) {
+        Some(text) => text.as_bytes().to_vec(),
+        None => read_file(path)?,
     };
-    let mut opened = read_pattern_text(&text).map_err(|error| SessionError::Format {
+    let mut opened = read(&bytes, &options.reading).map_err(|error| SessionError::Format {
         path: PathBuf::from(path),
         error,
     })?;
@@ -181,41 +178,12 @@ fn stem(path: &Path) -> String {
     }
 }
 
-/// Reads a pattern of either format.
+/// Reads a pattern from a text, in any format.
 ///
 /// # Errors
 /// The text is not a pattern; with its place and a remedy.
-pub fn read_pattern_text(text: &str) -> Result<Opened, FormatError> {
-    if looks_like_garmentcode(text) {
-        let reading = read_garmentcode(text)?;
-        return Ok(Opened {
-            pattern: reading.pattern,
-            fitting: Fitting::default(),
-            format: PatternFormat::GarmentCode,
-            notes: reading.notes.iter().map(ToString::to_string).collect(),
-        });
-    }
-    let file = read_document(text)?;
-    Ok(Opened {
-        pattern: file.pattern,
-        fitting: file.fitting,
-        format: PatternFormat::Native,
-        notes: file.notes.iter().map(ToString::to_string).collect(),
-    })
-}
-
-/// A GarmentCode file has a `pattern` with `panels`; a native one says `toile`.
-fn looks_like_garmentcode(text: &str) -> bool {
-    #[derive(serde::Deserialize)]
-    struct Head {
-        toile: Option<serde::de::IgnoredAny>,
-        pattern: Option<serde::de::IgnoredAny>,
-    }
-    // A damaged native file goes to the native reader, which says where it is damaged.
-    match serde_json::from_str::<Head>(text) {
-        Ok(head) => head.toile.is_none() && head.pattern.is_some(),
-        Err(_) => !text.contains("\"toile\"") && text.contains("\"panels\""),
-    }
+pub fn read_pattern_text(text: &str) -> Result<Reading, FormatError> {
+    read(text.as_bytes(), &ReadOptions::default())
 }
 
 /// Reads a table of body measurements: native JSON, GarmentCode YAML, Seamly, Valentina or

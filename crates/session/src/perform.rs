@@ -2,9 +2,9 @@
 
 use crate::bodies::{body_of, description_of, shaped};
 use crate::fabrics::chosen;
-use crate::fitting::{document_text, refuse_itself, try_on};
+use crate::fitting::{OpenedProject, document_text, refuse_itself, try_on};
 use crate::history::History;
-use crate::open::{open_pattern_from, read_pattern_text};
+use crate::open::{OpenOptions, open_pattern_from, read_pattern_text};
 use crate::outfit::DraftedPart;
 use crate::output::cannot;
 use crate::watcher::{ProgressShare, report_progress};
@@ -29,7 +29,7 @@ type Outcome = Result<Vec<Event>, SessionError>;
 impl Session {
     pub(crate) fn perform(&mut self, command: &Command, watcher: &mut dyn Watcher) -> Outcome {
         match command {
-            Command::OpenPattern { path } => self.open(path, watcher),
+            Command::OpenPattern { path, options } => self.open(path, options, watcher),
             Command::SetOrigin { origin } => self.set_origin(*origin),
             Command::SavePattern { path } => self.save(path, watcher),
             Command::NewPattern { name } => self.start(name),
@@ -110,11 +110,16 @@ impl Session {
         Ok(self.replace(next))
     }
 
-    fn open(&mut self, path: &Path, watcher: &mut dyn Watcher) -> Outcome {
+    fn open(&mut self, path: &Path, options: &OpenOptions, watcher: &mut dyn Watcher) -> Outcome {
         report_progress(watcher, "reading", 0.0, &path.display().to_string())?;
-        let (next, notes) = Project::open_from(path, self.origin)?;
-        let mut events = self.begin(next);
+        let OpenedProject {
+            project,
+            notes,
+            found,
+        } = Project::open_from(path, self.origin, options)?;
+        let mut events = self.begin(project);
         self.saved = self.project.clone();
+        events.push(Event::FileRead(found));
         events.extend(notes.iter().map(|note| Event::Warned {
             message: format!("{}: {note}", path.display()),
         }));
@@ -390,9 +395,9 @@ impl Session {
         notes: &mut Vec<String>,
     ) -> Result<Arc<Pattern>, SessionError> {
         refuse_itself(&self.project, path)?;
-        let opened = open_pattern_from(path, self.origin)?;
+        let opened = open_pattern_from(path, self.origin, &OpenOptions::default())?;
         let note = |note: &String| format!("{}: {note}", path.display());
-        notes.extend(opened.notes.iter().map(note));
+        notes.extend(opened.words().iter().map(note));
         Ok(Arc::new(opened.pattern))
     }
 

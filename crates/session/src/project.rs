@@ -88,16 +88,6 @@ impl Project {
             && worn(self) == worn(other)
     }
 
-    /// Whether the garment is tried on in the default way, apart from the size.
-    pub(crate) fn is_tried_on_as_drafted(&self) -> bool {
-        let plain = Self {
-            pattern: self.pattern.clone(),
-            size: self.size.clone(),
-            ..Self::default()
-        };
-        plain.says_the_same(self)
-    }
-
     /// The project with all `edits` made in its pattern; if one is refused, none is made.
     pub(crate) fn edited(&self, edits: &[Edit]) -> Result<Self, EditError> {
         let mut pattern = (*self.pattern).clone();

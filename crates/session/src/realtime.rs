@@ -155,7 +155,7 @@ impl RealtimeRun {
                     .to_owned(),
             ));
         };
-        let mut commands = vec![Command::OpenPattern { path: path.clone() }];
+        let mut commands = vec![Command::open(path.clone())];
         if !others.is_empty() {
             let others = others.iter().zip(2..);
             let others = others.map(|(path, layer)| OtherGarment {

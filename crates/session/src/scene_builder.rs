@@ -425,9 +425,7 @@ impl<'a> Builder<'a> {
     /// A pattern's garment, sewn round the scene's first body, or else round the pattern's own body.
     fn garment(&self, pattern: &str, watcher: &mut dyn Watcher) -> Result<Cloth, SessionError> {
         let mut session = Session::new();
-        let mut commands = vec![Command::OpenPattern {
-            path: self.place.beside(pattern),
-        }];
+        let mut commands = vec![Command::open(self.place.beside(pattern))];
         if let Some(body) = self.file.objects.iter().find_map(|o| o.body.as_ref()) {
             let figure = figure_named(body);
             let measurements = figure.is_none().then(|| self.place.beside(body));

@@ -211,7 +211,7 @@ impl Session {
     /// The command in a form that can be executed again: the content of a pattern that came through a pipe is
     /// stored in it.
     fn lasting(&self, command: Command) -> Result<Command, SessionError> {
-        if let Command::OpenPattern { path } = &command
+        if let Command::OpenPattern { path, .. } = &command
             && is_pipe(path)
         {
             return Ok(Command::RestorePattern {

@@ -5,7 +5,7 @@ use crate::markers::{other_sizes_words, there_are};
 use crate::output::File;
 use crate::watched_search::watched;
 use crate::{
-    Command, MarkerFormat, MarkerSummary, PatternFormat, Session, SessionError, Silent, Watcher,
+    Command, Format, MarkerFormat, MarkerSummary, Session, SessionError, Silent, Watcher,
     open_pattern,
 };
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ pub fn nest_marker(
     }
     let mut session = Session::new();
     let path = path.to_owned();
-    session.execute(Command::OpenPattern { path: path.clone() }, &mut Silent)?;
+    session.execute(Command::open(path.clone()), &mut Silent)?;
     let mut paths = Vec::new();
     let mut notes: Vec<Vec<String>> = Vec::new();
     if let Some(how) = job.search {
@@ -148,11 +148,8 @@ fn written(
 
 /// Refuses to store a marker in a file with parts that this program does not know: the whole file is written
 /// anew, and these parts would be lost.
-fn refuse_loss(
-    path: &Path,
-    (format, notes): (PatternFormat, &[String]),
-) -> Result<(), SessionError> {
-    if format != PatternFormat::Native {
+fn refuse_loss(path: &Path, (format, notes): (Format, &[String])) -> Result<(), SessionError> {
+    if format != Format::Native {
         return Err(SessionError::Conflict(format!(
             "{}: markers are stored in Toile's own format; convert the pattern first, as in `toile convert PATTERN NAME.toile.json`",
             path.display()

@@ -1,4 +1,4 @@
-//! Single jobs that need no session: conversion, panel meshes, bodies.
+//! Single jobs that need no session: panel meshes, bodies.
 //!
 //! # Decided with
 //! - [`toile_body::Mannequin`]: bodies made;
@@ -14,13 +14,12 @@
 //! Options: crate `cli`, `body_options.rs`, `tool_commands.rs`.
 
 use crate::clips::{open_clip, own_clip};
-use crate::fitting::document_text;
 use crate::mesh_file::{OpenedMesh, open_person};
 use crate::open::read_input;
 use crate::output::cannot;
 use crate::product::body_obj;
 use crate::realtime::character_with;
-use crate::{FabricChoice, PanelOrigin, PatternFormat, Project, SessionError};
+use crate::{FabricChoice, Project, SessionError};
 use std::path::Path;
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_body::{
@@ -30,7 +29,7 @@ use toile_body::{
 use toile_geometry::{Bounds2, Vec2, Vec3};
 use toile_interchange::{
     ExpectedKind, FormatError, ObjGroup, ObjMesh, write_atomically, write_body_glb,
-    write_character, write_garmentcode, write_mannequin, write_measurements, write_obj,
+    write_character, write_mannequin, write_measurements, write_obj,
 };
 use toile_measure::Measurements;
 use toile_pattern::Draft;
@@ -63,16 +62,7 @@ pub(crate) fn project_of(
     path: &Path,
     size: Option<&str>,
 ) -> Result<(Project, Vec<String>), SessionError> {
-    project_from(path, size, PanelOrigin::Automatic)
-}
-
-/// Opens a pattern file whose panels are placed round an origin.
-fn project_from(
-    path: &Path,
-    size: Option<&str>,
-    origin: PanelOrigin,
-) -> Result<(Project, Vec<String>), SessionError> {
-    let (mut project, notes) = Project::open_from(path, origin)?;
+    let (mut project, notes) = Project::open(path)?;
     if let Some(size) = size {
         project.size = Some(size.to_owned());
         project.check_size()?;
@@ -90,46 +80,6 @@ pub(crate) fn sound_draft(project: &Project) -> Result<Draft, SessionError> {
         FabricChoice::cut(fabric, &mut draft);
     }
     Ok(draft)
-}
-
-/// Converts a pattern to the format asked for, or else to the format of the output's name. Panels that the
-/// input places in space, round `origin`, are written as they stand on the floor. Returns notes on parts that
-/// were left out or assumed in reading and writing.
-///
-/// # Errors
-/// The input cannot be read, the output has a name of another format, or cannot be written.
-pub fn convert(
-    from: &Path,
-    to: &Path,
-    format: Option<PatternFormat>,
-    origin: PanelOrigin,
-) -> Result<Vec<String>, SessionError> {
-    let remedy = "patterns are written as NAME.toile.json (Toile) and NAME.json (GarmentCode); \
-                  `toile nest --write` writes markers as svg, dxf, pdf and plt";
-    check_ending(to, &[".json"], remedy)?;
-    let native = to.to_string_lossy().to_lowercase().ends_with(".toile.json");
-    let format = format.unwrap_or(match native {
-        true => PatternFormat::Native,
-        false => PatternFormat::GarmentCode,
-    });
-    let (project, mut notes) = project_from(from, None, origin)?;
-    let text = match format {
-        PatternFormat::Native => {
-            document_text(&project, Some(to)).map_err(cannot("the pattern"))?
-        }
-        PatternFormat::GarmentCode => {
-            let draft = sound_draft(&project)?;
-            let writing = write_garmentcode(&draft);
-            notes.extend(writing.lost.iter().map(ToString::to_string));
-            if !project.is_tried_on_as_drafted() {
-                let lost = "wearer, fabric and other garments it is tried on with: GarmentCode has no place for them";
-                notes.push(lost.to_owned());
-            }
-            writing.text
-        }
-    };
-    write_atomically(to, text.as_bytes())?;
-    Ok(notes)
 }
 
 /// Writes the triangulated panels of a pattern side by side as OBJ, one group for each panel; texture

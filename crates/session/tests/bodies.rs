@@ -85,13 +85,7 @@ fn a_mannequin_file_is_worn_edited_and_undone() {
 #[test]
 fn the_garment_is_made_on_the_edited_body() {
     let mut session = Session::new();
-    run(
-        &mut session,
-        Command::OpenPattern {
-            path: SAMPLE.into(),
-        },
-    )
-    .unwrap();
+    run(&mut session, Command::open(SAMPLE)).unwrap();
     run(&mut session, weigh(2, 1.3)).unwrap();
     let project = session.project().clone();
     assert!(matches!(project.body, BodyChoice::Shaped { .. }));

@@ -17,9 +17,7 @@ fn opened() -> (Session, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let path = band(folder.path());
     let mut session = Session::new();
-    session
-        .execute(Command::OpenPattern { path }, &mut Silent)
-        .unwrap();
+    session.execute(Command::open(path), &mut Silent).unwrap();
     (session, folder)
 }
 
@@ -215,7 +213,7 @@ fn refused_commands_change_nothing() {
             figure: None,
             measurements: Some(missing.clone()),
         },
-        Command::OpenPattern { path: missing },
+        Command::open(missing),
         Command::Undo,
         Command::Redo,
         Command::export(&folder.path().join("out")),
@@ -337,7 +335,7 @@ fn ids_are_never_given_twice() {
             run(&mut session, Command::Redo).unwrap();
             run(&mut session, Command::Undo).unwrap();
             run(&mut session, Command::SavePattern { path: path.clone() }).unwrap();
-            run(&mut session, Command::OpenPattern { path: path.clone() }).unwrap();
+            run(&mut session, Command::open(path.clone())).unwrap();
         }
     }
 }
@@ -350,7 +348,7 @@ fn a_saved_pattern_opens_as_the_same_pattern() {
     run(&mut session, edit(vec![move_it])).unwrap();
     run(&mut session, Command::SavePattern { path: path.clone() }).unwrap();
     let mut again = Session::new();
-    run(&mut again, Command::OpenPattern { path }).unwrap();
+    run(&mut again, Command::open(path)).unwrap();
     assert_eq!(again.project().pattern, session.project().pattern);
 }
 
@@ -371,7 +369,7 @@ fn faults_keep_a_garment_from_being_made() {
     )
     .unwrap();
     let mut session = Session::new();
-    run(&mut session, Command::OpenPattern { path }).unwrap();
+    run(&mut session, Command::open(path)).unwrap();
     let events = run(&mut session, Command::Check).unwrap();
     assert!(
         matches!(events[0], Event::Checked { errors, .. } if errors > 0),

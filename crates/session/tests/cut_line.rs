@@ -28,9 +28,7 @@ fn told<'a>(messages: impl IntoIterator<Item = &'a str>) -> [usize; 2] {
 }
 
 fn done(path: &Path, commands: Vec<Command>) -> (Session, Vec<Event>) {
-    let open = Command::OpenPattern {
-        path: path.to_owned(),
-    };
+    let open = Command::open(path);
     let all: Vec<Command> = [open].into_iter().chain(commands).collect();
     let mut session = Session::new();
     let events = session.execute_all(&all, &mut Silent).unwrap();

@@ -28,10 +28,7 @@ fn search(seed: u64) -> Search {
 
 fn opened(path: &str) -> Session {
     let mut session = Session::new();
-    let path = path.into();
-    session
-        .execute(Command::OpenPattern { path }, &mut Silent)
-        .unwrap();
+    session.execute(Command::open(path), &mut Silent).unwrap();
     session
 }
 

@@ -15,9 +15,7 @@ use toile_session::{
 };
 
 fn prepared(pattern: &Path) -> Session {
-    let open = Command::OpenPattern {
-        path: pattern.to_owned(),
-    };
+    let open = Command::open(pattern);
     let quality = Command::SetQuality {
         quality: Quality::Preview,
     };

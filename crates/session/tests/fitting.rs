@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use support::{BAND, files, lasting, make};
 use toile_measure::{Measurements, Origin};
 use toile_session::{
-    BodyChoice, Budget, ClothSettings, Command, Event, Figure, MarkerSummary, NestOptions,
-    OtherGarment, PanelOrigin, PrintOptions, Project, Recovery, Session, SessionError, Silent,
+    BodyChoice, Budget, ClothSettings, Command, ConvertOptions, Event, Figure, MarkerSummary,
+    NestOptions, OtherGarment, PrintOptions, Project, Recovery, Session, SessionError, Silent,
     abandoned, convert, journal_lines, mesh_panels, nest_patterns, print_pattern, read_journal,
 };
 
@@ -28,9 +28,7 @@ fn warned(events: &[Event]) -> Vec<&str> {
 
 fn open(path: &Path) -> (Session, Vec<Event>) {
     let mut session = Session::new();
-    let open = Command::OpenPattern {
-        path: path.to_owned(),
-    };
+    let open = Command::open(path);
     let events = run(&mut session, open).unwrap();
     (session, events)
 }
@@ -442,13 +440,20 @@ fn jobs_without_a_session_take_what_the_file_keeps() {
     // Converted to another folder it still names its files; GarmentCode has no place for them.
     std::fs::create_dir(folder.join("far")).unwrap();
     let far = folder.join("far/band.toile.json");
-    let origin = PanelOrigin::Automatic;
-    assert_eq!(convert(&path, &far, None, origin).unwrap(), [""; 0]);
+    let options = ConvertOptions::default();
+    let converted = convert(&path, &far, &options).unwrap();
+    assert_eq!(converted.notes, [""; 0]);
+    assert_eq!(converted.losses, []);
     let (again, events) = open(&far);
     assert_eq!(warned(&events), [""; 0]);
     assert_eq!(again.project().others[0].name(), "Belt");
-    let lost = convert(&path, &folder.join("band.json"), None, origin).unwrap();
-    assert!(lost.iter().any(|note| note.contains("wearer")), "{lost:?}");
+    let lost = convert(&path, &folder.join("band.json"), &options)
+        .unwrap()
+        .losses;
+    assert!(
+        lost.iter().any(|loss| loss.what == "the fitting"),
+        "{lost:?}"
+    );
 }
 
 #[test]

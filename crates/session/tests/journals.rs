@@ -18,7 +18,7 @@ fn exported(folder: &Path) -> PathBuf {
     let mut session = Session::new();
     let fabric = Some("denim".to_owned());
     for command in [
-        Command::OpenPattern { path },
+        Command::open(path),
         Command::SetFabric { fabric },
         Command::Nest,
         Command::export(&dir),

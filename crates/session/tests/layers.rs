@@ -25,9 +25,7 @@ fn bands(folder: &Path) -> [std::path::PathBuf; 2] {
 
 fn wear(paths: &[std::path::PathBuf; 2], layers: [u16; 2], out: &Path) -> Vec<Command> {
     vec![
-        Command::OpenPattern {
-            path: paths[0].clone(),
-        },
+        Command::open(paths[0].clone()),
         Command::SetLayers {
             layer: layers[0],
             others: vec![OtherGarment {
@@ -104,9 +102,7 @@ fn layers_that_cannot_be_worn_are_refused_and_nothing_changes() {
     let folder = tempfile::tempdir().unwrap();
     let paths = bands(folder.path());
     let mut session = Session::new();
-    let open = Command::OpenPattern {
-        path: paths[0].clone(),
-    };
+    let open = Command::open(paths[0].clone());
     session.execute(open, &mut Silent).unwrap();
     let before = session.project().clone();
     let mut refused = |path: &Path, layer: u16| {

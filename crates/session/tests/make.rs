@@ -156,7 +156,7 @@ fn what_was_not_made_is_not_exported() {
     let pattern = band(folder.path());
     let dir = folder.path().join("out");
     let mut session = Session::new();
-    let open = Command::OpenPattern { path: pattern };
+    let open = Command::open(pattern);
     let export = Command::export(&dir);
     session
         .execute_all(&[open, Command::Nest, export.clone()], &mut Silent)
@@ -185,10 +185,7 @@ fn the_finest_quality_swings_on_a_coarser_mesh_of_the_same_panels_first_unless_c
     let path = band(folder.path());
     let levels = |quality| {
         let mut session = Session::new();
-        for command in [
-            Command::OpenPattern { path: path.clone() },
-            Command::SetQuality { quality },
-        ] {
+        for command in [Command::open(path.clone()), Command::SetQuality { quality }] {
             session.execute(command, &mut Silent).unwrap();
         }
         session.garment_setup().unwrap().setup.levels

@@ -19,10 +19,8 @@ fn edit(session: &mut Session, edits: Vec<Edit>) {
 /// A session with the shirt.
 fn opened() -> Session {
     let mut session = Session::new();
-    let path = SAMPLE.into();
-    session
-        .execute(Command::OpenPattern { path }, &mut Silent)
-        .unwrap();
+    let path = SAMPLE;
+    session.execute(Command::open(path), &mut Silent).unwrap();
     session
 }
 

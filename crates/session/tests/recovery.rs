@@ -24,9 +24,7 @@ static LOCKS: Mutex<()> = Mutex::new(());
 fn opened(folder: &Path) -> Session {
     let mut session = Session::new();
     let path = band(folder);
-    session
-        .execute(Command::OpenPattern { path }, &mut Silent)
-        .unwrap();
+    session.execute(Command::open(path), &mut Silent).unwrap();
     session
 }
 
@@ -316,7 +314,7 @@ fn the_history_of_one_document_is_not_taken_for_that_of_the_next() {
     edit(&mut session, 1);
     // Another document, with as many steps, of the same file.
     let again = band(folder.path());
-    let open = Command::OpenPattern { path: again };
+    let open = Command::open(again);
     session.execute(open, &mut Silent).unwrap();
     edit(&mut session, 7);
     edit(&mut session, 8);

@@ -26,9 +26,7 @@ fn garmentcode_samples_have_their_areas_and_stitches() {
     ] {
         let path = data.join("garmentcode").join(file);
         let mut session = Session::new();
-        session
-            .execute(Command::OpenPattern { path }, &mut Silent)
-            .unwrap();
+        session.execute(Command::open(path), &mut Silent).unwrap();
         let draft = session.draft();
         let pieces: f64 = draft
             .pieces

@@ -94,9 +94,7 @@ fn wear(figure: Figure, outfit: [&str; 3], quality: Quality) -> Result<Worn, Str
         layer: k as u16 + 1,
     };
     super::worn::worn([
-        Command::OpenPattern {
-            path: path(outfit[0]),
-        },
+        Command::open(path(outfit[0])),
         Command::SetLayers {
             layer: 1,
             others: vec![other(1), other(2)],

@@ -76,9 +76,7 @@ pub fn rest(arguments: &[String]) -> Result<(), String> {
         layer,
     });
     let mut commands = vec![
-        Command::OpenPattern {
-            path: task.pattern.clone(),
-        },
+        Command::open(task.pattern.clone()),
         Command::SetQuality {
             quality: task.quality,
         },

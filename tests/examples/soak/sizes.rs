@@ -147,9 +147,7 @@ fn worn(pattern: &Path, wearer: &Wearer, task: &Task) -> Result<(String, bool), 
         measures,
         at_rest,
     } = super::worn::worn([
-        Command::OpenPattern {
-            path: pattern.to_owned(),
-        },
+        Command::open(pattern),
         dressed(wearer, &task.out)?,
         Command::SetQuality {
             quality: task.quality,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// File name extensions of patterns.
-pub const PATTERNS: &[&str] = &["json", "yaml", "yml"];
+pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf"];
 /// File name extensions of measurement tables and mannequins.
 pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
 

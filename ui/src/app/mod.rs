@@ -257,9 +257,7 @@ impl ToileApp {
 
     /// Opens a pattern in place of the present one.
     pub fn open(&mut self, path: &Path) {
-        let command = Command::OpenPattern {
-            path: path.to_owned(),
-        };
+        let command = Command::open(path);
         if !self.execute(command) && !self.is_open() {
             self.refusal = Some(self.notice.text.clone());
             self.notice = Notice::default();

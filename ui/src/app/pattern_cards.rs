@@ -58,7 +58,7 @@ impl Pieces {
         // average body.
         let mut session = Session::new();
         let path = path.to_owned();
-        session.execute(Command::OpenPattern { path }, &mut Silent)?;
+        session.execute(Command::open(path), &mut Silent)?;
         let pattern = session.project().pattern.clone();
         let evaluation = session.evaluation();
         let draft = Arc::new(evaluation.draft().0);

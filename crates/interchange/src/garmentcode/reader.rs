@@ -2,13 +2,14 @@
 
 use super::specification::{self, SpecPanel, SpecStitch, Specification};
 use crate::FormatError;
+use crate::part_names::part_name;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use toile_fabric::Material;
 use toile_geometry::{Curve, Vec2, Vec3};
 use toile_pattern::{
-    CurveRule, Edge, EdgeId, Fabric, FabricId, LineKind, NAME_LENGTH, PanelBuilder, Pattern,
-    PointId, PointRule, Seam, SeamId, Span, WornRule,
+    CurveRule, Edge, EdgeId, Fabric, FabricId, LineKind, PanelBuilder, Pattern, PointId, PointRule,
+    Seam, SeamId, Span, WornRule,
 };
 
 /// A seam with sides that differ in length by more than this ratio counts as gathered on purpose.
@@ -88,24 +89,6 @@ struct Builder {
     edges: Vec<Vec<Option<Place>>>,
     /// Whether all outlines of an older file are wound as seen from the right side.
     right_sides_out: bool,
-}
-
-/// A valid name for a part, different from all names taken.
-fn part_name(wanted: &str, taken: &mut BTreeSet<String>) -> String {
-    let clean: String = wanted
-        .chars()
-        .filter(|c| !c.is_control() && *c != '\'')
-        .take(NAME_LENGTH - 8)
-        .collect();
-    let clean = clean.trim();
-    let base = if clean.is_empty() { "unnamed" } else { clean };
-    let mut name = base.to_owned();
-    let mut count = 1;
-    while !taken.insert(name.clone()) {
-        count += 1;
-        name = format!("{base} {count}");
-    }
-    name
 }
 
 impl Builder {

@@ -1,7 +1,7 @@
 //! A resolved pattern as a GarmentCode specification.
 
 use super::curves::write_curve;
-use crate::FormatError;
+use crate::exchange::Loss;
 use serde_json::{Map, Value, json};
 use toile_geometry::{Curve, Rigid, Vec3};
 use toile_pattern::{Draft, DraftSeam, Facing, Piece, PieceEdge, Worn};
@@ -19,8 +19,8 @@ const MAX_ROUNDS: usize = 32;
 pub struct GarmentCodeWriting {
     /// The JSON text.
     pub text: String,
-    /// Notes on parts that the format cannot hold, with the piece or seam they belong to.
-    pub lost: Vec<FormatError>,
+    /// What single pieces and seams lost; what the format has no place for at all is not listed.
+    pub lost: Vec<Loss>,
 }
 
 /// Writes the sewn pieces of a draft.
@@ -41,7 +41,7 @@ pub fn write_garmentcode(draft: &Draft) -> GarmentCodeWriting {
             panels.insert(piece.name.clone(), writer.panel(index, piece));
             order.push(json!(piece.name));
         } else {
-            writer.lose(&piece.name, "the piece is sewn to nothing and is left out");
+            writer.lose(&piece.name, "the piece", "sewn to nothing, and left out");
         }
     }
     let stitches: Vec<Value> = draft
@@ -49,9 +49,6 @@ pub fn write_garmentcode(draft: &Draft) -> GarmentCodeWriting {
         .iter()
         .flat_map(|seam| writer.stitches(seam))
         .collect();
-    for fabric in &draft.fabrics {
-        writer.lose(&fabric.name, "the fabric is not part of the format");
-    }
     let value = json!({
         "pattern": { "panels": panels, "stitches": stitches, "panel_order": order },
         "parameters": {},
@@ -73,7 +70,7 @@ struct Writer<'a> {
     draft: &'a Draft,
     /// For each piece and edge, the fractions of the edge at which it is cut, 0 and 1 included.
     cuts: Vec<Vec<Vec<f64>>>,
-    lost: Vec<FormatError>,
+    lost: Vec<Loss>,
 }
 
 /// One span of a seam's side, with its ends as fractions of the side's length (`start`, `end`) and of the
@@ -136,12 +133,8 @@ impl Stretch {
 }
 
 impl Writer<'_> {
-    fn lose(&mut self, place: &str, what: &str) {
-        self.lost.push(FormatError::new(
-            place,
-            what,
-            "keep the native file beside this one",
-        ));
+    fn lose(&mut self, place: &str, what: &str, why: &str) {
+        self.lost.push(Loss::at(place, what, why));
     }
 
     /// Cuts edges at the ends of spans, and copies every cut on one side of a seam to its other side until no
@@ -173,7 +166,8 @@ impl Writer<'_> {
         }
         self.lose(
             "seams",
-            "the cuts that seams ask of each other never settle, so some stitches are left out",
+            "some stitches",
+            "the cuts that seams ask of each other never settle",
         );
     }
 
@@ -228,7 +222,6 @@ impl Writer<'_> {
                 edge += 1;
             }
         }
-        self.list_losses(piece);
         let place = self.place(piece);
         let (x, y, z) = {
             let (roll, pitch, yaw) = place.rotation.euler_angles();
@@ -243,26 +236,6 @@ impl Writer<'_> {
         })
     }
 
-    fn list_losses(&mut self, piece: &Piece) {
-        let name = &piece.name;
-        let mut lose = |what: &str| self.lose(name, what);
-        if !piece.holes.is_empty() {
-            lose("holes are written as further edge loops, which other readers may not know");
-        }
-        if !piece.internal_lines.is_empty() {
-            lose("internal lines are not part of the format");
-        }
-        if !piece.notches.is_empty() {
-            lose("notches are not part of the format");
-        }
-        if edges(piece).any(|e| e.seam_allowance != 0.0) {
-            lose("seam allowances are not part of the format");
-        }
-        if (piece.grain - std::f64::consts::FRAC_PI_2).abs() > 1e-9 {
-            lose("the grain is not part of the format");
-        }
-    }
-
     /// Transform from the panel's plane to the world. Pieces to be wrapped round the body lie flat beside it.
     fn place(&mut self, piece: &Piece) -> Rigid {
         let (facing, level) = match piece.worn {
@@ -272,7 +245,8 @@ impl Writer<'_> {
         };
         self.lose(
             &piece.name,
-            "its place round the body is not part of the format: it is put flat beside it",
+            "its place round the body",
+            "it is put flat beside it",
         );
         let (turn, offset) = match facing {
             Facing::Front | Facing::Around => (Vec3::zeros(), Vec3::new(0.0, level, 0.25)),
@@ -311,12 +285,10 @@ impl Writer<'_> {
         if a.len() != b.len() || a.is_empty() {
             self.lose(
                 &seam.name,
-                "the seam cannot be cut into pairs of whole edges",
+                "the seam",
+                "it cannot be cut into pairs of whole edges",
             );
             return Vec::new();
-        }
-        if seam.gathered {
-            self.lose(&seam.name, "gathers are kept as lengths only");
         }
         a.into_iter()
             .zip(b)

@@ -109,7 +109,7 @@ pub(super) fn one_by_one(watcher: &mut dyn Watcher) -> Result<Content, LabError>
                 watcher.progress("garments", share + done / count as f64, &detail)
             };
             let commands = [
-                Command::OpenPattern { path: path.into() },
+                Command::open(path),
                 Command::SetQuality { quality },
                 Command::Check,
                 Command::Nest,
@@ -171,7 +171,7 @@ pub(super) fn layered(watcher: &mut dyn Watcher) -> Result<Content, LabError> {
         let [inner, others @ ..] = patterns.map(PathBuf::from);
         let others = others.into_iter().zip(2..);
         let commands = [
-            Command::OpenPattern { path: inner },
+            Command::open(inner),
             Command::SetLayers {
                 layer: 1,
                 others: others

@@ -77,9 +77,7 @@ fn placed_band() -> GarmentSetup {
     std::fs::create_dir_all(&folder).unwrap();
     let mut session = Session::new();
     let commands = [
-        Command::OpenPattern {
-            path: band(&folder),
-        },
+        Command::open(band(&folder)),
         Command::SetQuality {
             quality: Quality::Preview,
         },

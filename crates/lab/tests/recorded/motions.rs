@@ -55,9 +55,7 @@ pub fn note_methods(record: &mut Record) {
 pub fn placed_shirt() -> GarmentSetup {
     let mut session = Session::new();
     let commands = [
-        Command::OpenPattern {
-            path: SAMPLE.into(),
-        },
+        Command::open(SAMPLE),
         Command::SetQuality {
             quality: Quality::Preview,
         },

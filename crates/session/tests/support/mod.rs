@@ -18,9 +18,7 @@ pub fn band(folder: &Path) -> PathBuf {
 /// The commands that make the band into a folder.
 pub fn make(pattern: &Path, dir: &Path) -> Vec<Command> {
     vec![
-        Command::OpenPattern {
-            path: pattern.to_owned(),
-        },
+        Command::open(pattern),
         Command::SetQuality {
             quality: Quality::Preview,
         },

@@ -1,0 +1,101 @@
+//! Corners of a line: where the file marks them, else where it kinks.
+
+use super::piece::DrawnLine;
+use toile_geometry::Vec2;
+
+/// Least turn of a line that is a corner, where the file marks none (rad): 10 degrees.
+const MIN_KINK: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+/// Largest distance of a vertex from a straight line that still lies on it (m).
+pub(crate) const STRAIGHT: f64 = 1e-5;
+
+/// Indices of the corners of a line, in order; `further` are vertices that must be corners. A closed line has
+/// at least two, an open one its ends.
+pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
+    let count = line.len();
+    let marked = line.is_corner.iter().any(|&is_corner| is_corner);
+    let is_corner = |k: usize| {
+        let is_end = !line.is_closed && (k == 0 || k + 1 == count);
+        let is_kink = || {
+            line.by_size
+                .iter()
+                .any(|points| is_kink(points, k, line.is_closed))
+        };
+        is_end
+            || further.contains(&k)
+            || match marked {
+                true => line.is_corner.get(k) == Some(&true),
+                false => is_kink(),
+            }
+    };
+    let mut found: Vec<usize> = (0..count).filter(|&k| is_corner(k)).collect();
+    if line.is_closed && found.len() < 2 && count > 1 {
+        let first = found.first().copied().unwrap_or(0);
+        found = vec![first, (first + count / 2) % count];
+        found.sort_unstable();
+    }
+    found
+}
+
+fn is_kink(points: &[Vec2], k: usize, is_closed: bool) -> bool {
+    let n = points.len();
+    if !is_closed && (k == 0 || k + 1 == n) {
+        return false;
+    }
+    let [before, after] = [points[(k + n - 1) % n], points[(k + 1) % n]];
+    let (a, b) = (points[k] - before, after - points[k]);
+    let turn = a.perp(&b).atan2(a.dot(&b)).abs();
+    a.norm() > 0.0 && b.norm() > 0.0 && turn > MIN_KINK
+}
+
+/// Whether all points lie on the straight line from the first to the last.
+pub(crate) fn is_straight(points: &[Vec2]) -> bool {
+    let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
+        return true;
+    };
+    let along = last - first;
+    let length = along.norm();
+    let off = |p: &Vec2| match length > 0.0 {
+        true => (along.perp(&(p - first)) / length).abs(),
+        false => (p - first).norm(),
+    };
+    points.iter().all(|p| off(p) <= STRAIGHT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> DrawnLine {
+        let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]];
+        DrawnLine::one(points.map(Vec2::from).to_vec(), true)
+    }
+
+    #[test]
+    fn kinks_are_corners_where_none_are_marked() {
+        assert_eq!(corners(&square(), &[]), [0, 1, 3, 4]);
+        assert_eq!(corners(&square(), &[2]), [0, 1, 2, 3, 4]);
+        let marked = DrawnLine {
+            is_corner: vec![true, false, true, false, false],
+            ..square()
+        };
+        assert_eq!(corners(&marked, &[]), [0, 2]);
+    }
+
+    #[test]
+    fn a_smooth_ring_has_two_corners_and_an_open_line_its_ends() {
+        let at = |k: i32| {
+            let turn = f64::from(k) / 48.0 * std::f64::consts::TAU;
+            Vec2::new(turn.cos(), turn.sin())
+        };
+        let ring = DrawnLine::one((0..48).map(at).collect(), true);
+        assert_eq!(corners(&ring, &[]), [0, 24]);
+        let open = DrawnLine::one((0..10).map(at).collect(), false);
+        assert_eq!(corners(&open, &[]), [0, 9]);
+    }
+
+    #[test]
+    fn straightness_is_a_hundredth_of_a_millimetre() {
+        let bent = |by: f64| [Vec2::zeros(), Vec2::new(0.5, by), Vec2::new(1.0, 0.0)];
+        assert!(is_straight(&bent(9e-6)) && !is_straight(&bent(2e-5)));
+    }
+}

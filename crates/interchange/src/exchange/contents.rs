@@ -1,0 +1,311 @@
+//! What a document holds, by kind and number, and which of it a format has no place for.
+//!
+//! Every field of the document is taken apart here, and every kind of contents is decided on for every
+//! format: a new field, kind or format does not compile until it is answered for.
+
+use super::{Format, Loss};
+use strum::{EnumCount, VariantArray};
+use toile_pattern::{
+    Cut, Edge, EdgeCorner, Line, LineKind, Notch, Number, Operation, OperationKind, Panel, Pattern,
+    PointRule, Seam, Sheet, Source, WornRule,
+};
+
+/// A kind of contents of a document.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, EnumCount, VariantArray)]
+pub enum Content {
+    /// Tables of measurements.
+    Sizes,
+    /// Named numbers.
+    Variables,
+    /// Numbers given by formulas, or by size.
+    Formulas,
+    /// Fabrics with their figures.
+    Fabrics,
+    /// Points placed by a construction, not by coordinates.
+    Constructions,
+    /// Guides.
+    Guides,
+    /// Panels.
+    Panels,
+    /// Lines drawn inside panels.
+    InternalLines,
+    /// Holes.
+    Holes,
+    /// Notches.
+    Notches,
+    /// Darts, those pivoted and those inside a panel too.
+    Darts,
+    /// Panels cut on the fold.
+    Folds,
+    /// Cuts that are spread.
+    Spreads,
+    /// Panels divided into sides.
+    Splits,
+    /// Lines that an operation inserts.
+    InsertedLines,
+    /// Pleats.
+    Pleats,
+    /// Allowances along edges.
+    Allowances,
+    /// Shapes of the cut line at corners.
+    Corners,
+    /// Grains that are not upright.
+    Grains,
+    /// Panels cut more than once.
+    Copies,
+    /// Places of panels on the body.
+    Places,
+    /// Seams.
+    Seams,
+    /// Eases and gathers of seams.
+    Eases,
+    /// Markers.
+    Markers,
+    /// Wearer, fabric and other garments that the garment is tried on with.
+    Fitting,
+}
+
+impl Content {
+    /// The kind in words, in the plural.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Sizes => "sizes",
+            Self::Variables => "variables",
+            Self::Formulas => "formulas",
+            Self::Fabrics => "fabrics",
+            Self::Constructions => "constructed points",
+            Self::Guides => "guides",
+            Self::Panels => "panels",
+            Self::InternalLines => "internal lines",
+            Self::Holes => "holes",
+            Self::Notches => "notches",
+            Self::Darts => "darts",
+            Self::Folds => "folds",
+            Self::Spreads => "spread cuts",
+            Self::Splits => "splits",
+            Self::InsertedLines => "inserted lines",
+            Self::Pleats => "pleats",
+            Self::Allowances => "seam allowances",
+            Self::Corners => "corners of the cut line",
+            Self::Grains => "grains",
+            Self::Copies => "copies of panels",
+            Self::Places => "places on the body",
+            Self::Seams => "seams",
+            Self::Eases => "eases and gathers",
+            Self::Markers => "markers",
+            Self::Fitting => "the fitting",
+        }
+    }
+
+    /// Reason why a format does not carry this kind, or carries its result alone; `None`: it carries it.
+    fn lost_in(self, format: Format) -> Option<&'static str> {
+        match format {
+            Format::Native => None,
+            Format::GarmentCode => self.lost_in_garmentcode(),
+            // Not written yet.
+            Format::DxfAama | Format::DxfAstm => None,
+        }
+    }
+
+    fn lost_in_garmentcode(self) -> Option<&'static str> {
+        /// The format has no field for it.
+        const NO_PLACE: Option<&str> = Some("the format has no place for them");
+        /// The shape that it gives is written.
+        const AS_DRAFTED: Option<&str> = Some("written as drafted, in one size");
+        match self {
+            Self::Panels | Self::Seams | Self::Places => None,
+            Self::Holes => Some("written as further edge loops, which other readers may not know"),
+            Self::Sizes
+            | Self::Variables
+            | Self::Fabrics
+            | Self::Guides
+            | Self::InternalLines
+            | Self::InsertedLines
+            | Self::Notches
+            | Self::Allowances
+            | Self::Corners
+            | Self::Grains
+            | Self::Markers
+            | Self::Fitting => NO_PLACE,
+            Self::Formulas | Self::Constructions => AS_DRAFTED,
+            Self::Darts => Some("written as edges that are sewn together"),
+            Self::Folds => Some("written unfolded"),
+            Self::Spreads | Self::Splits | Self::Pleats => AS_DRAFTED,
+            Self::Copies => Some("written as panels of their own"),
+            Self::Eases => Some("kept as the lengths of both sides alone"),
+        }
+    }
+}
+
+/// The contents of a pattern that a format has no place for, in the order of their kinds.
+pub(super) fn losses(pattern: &Pattern, format: Format) -> Vec<Loss> {
+    let counts = counted(pattern);
+    let all = Content::VARIANTS.iter().zip(counts);
+    let lost = all.filter_map(|(&content, count)| {
+        let why = content.lost_in(format).filter(|_| count > 0)?;
+        Some(Loss::of(content, count, why))
+    });
+    lost.collect()
+}
+
+/// Number of contents of each kind, in the order of the kinds.
+fn counted(pattern: &Pattern) -> [usize; Content::COUNT] {
+    let mut counter = Counter([0; Content::COUNT]);
+    counter.pattern(pattern);
+    counter.0
+}
+
+struct Counter([usize; Content::COUNT]);
+
+impl Counter {
+    fn add(&mut self, content: Content, count: usize) {
+        self.0[content as usize] += count;
+    }
+
+    fn add_if(&mut self, content: Content, is_there: bool) {
+        self.add(content, usize::from(is_there));
+    }
+
+    fn pattern(&mut self, pattern: &Pattern) {
+        let Pattern {
+            name: _,
+            unit: _,
+            sizes,
+            base_size: _,
+            variables,
+            fabrics,
+            sheets,
+            panels,
+            seams,
+            markers,
+            guides,
+            ids: _,
+        } = pattern;
+        self.add(Content::Sizes, sizes.len());
+        self.add(Content::Variables, variables.len());
+        self.add(Content::Fabrics, fabrics.len());
+        self.add(Content::Markers, markers.len());
+        self.add(Content::Guides, guides.len());
+        let numbers = toile_pattern::fields::numbers(pattern);
+        let formulas = numbers.into_iter().filter(|number| !is_value(number));
+        self.add(Content::Formulas, formulas.count());
+        sheets.iter().for_each(|sheet| self.sheet(sheet));
+        panels.iter().for_each(|panel| self.panel(panel));
+        seams.iter().for_each(|seam| self.seam(seam));
+    }
+
+    fn sheet(&mut self, sheet: &Sheet) {
+        let Sheet {
+            id: _,
+            name: _,
+            on: _,
+            on_table: _,
+            points,
+            curves: _,
+        } = sheet;
+        let constructed = points
+            .iter()
+            .filter(|point| !matches!(point.rule, PointRule::At { .. }));
+        self.add(Content::Constructions, constructed.count());
+    }
+
+    fn panel(&mut self, panel: &Panel) {
+        let Panel {
+            id: _,
+            name: _,
+            source,
+            lines,
+            notches,
+            operations,
+            grain,
+            allowance,
+            cut: Cut {
+                quantity,
+                mirrored: _,
+            },
+            fabric: _,
+            worn,
+            on_table: _,
+        } = panel;
+        self.add(Content::Panels, 1);
+        self.add_if(Content::Splits, matches!(source, Source::Side { .. }));
+        self.add_if(Content::Copies, *quantity != 1);
+        self.add_if(Content::Places, *worn != WornRule::Automatic);
+        let upright = Number::Value(std::f64::consts::FRAC_PI_2);
+        self.add_if(Content::Grains, *grain != upright);
+        self.add_if(Content::Allowances, *allowance != Number::ZERO);
+        lines.iter().for_each(|line| self.line(line));
+        for notch in notches {
+            let Notch {
+                id: _,
+                name: _,
+                line: _,
+                at: _,
+                kind: _,
+            } = notch;
+            self.add(Content::Notches, 1);
+        }
+        operations
+            .iter()
+            .for_each(|operation| self.operation(operation));
+    }
+
+    fn line(&mut self, line: &Line) {
+        let Line {
+            id: _,
+            name: _,
+            kind,
+            by: _,
+            edges,
+        } = line;
+        self.add_if(Content::Holes, *kind == LineKind::Hole);
+        self.add_if(Content::InternalLines, *kind == LineKind::Internal);
+        for edge in edges {
+            let Edge {
+                id: _,
+                name: _,
+                curve: _,
+                ends: _,
+                allowance,
+                corner,
+            } = edge;
+            self.add_if(Content::Allowances, allowance.is_some());
+            self.add_if(Content::Corners, *corner != EdgeCorner::default());
+        }
+    }
+
+    fn operation(&mut self, operation: &Operation) {
+        let content = match &operation.kind {
+            OperationKind::Dart { .. }
+            | OperationKind::Diamond { .. }
+            | OperationKind::Pivot { .. } => Content::Darts,
+            OperationKind::Fold { .. } => Content::Folds,
+            OperationKind::Spread { .. } => Content::Spreads,
+            OperationKind::Split { .. } => Content::Splits,
+            OperationKind::Insert { .. } => Content::InsertedLines,
+            OperationKind::Pleat { .. } => Content::Pleats,
+        };
+        self.add(content, 1);
+    }
+
+    fn seam(&mut self, seam: &Seam) {
+        let Seam {
+            id: _,
+            name: _,
+            sides: _,
+            ease,
+            gathered,
+            right_sides_together: _,
+            multi_ply: _,
+        } = seam;
+        self.add(Content::Seams, 1);
+        self.add_if(Content::Eases, *gathered || *ease != Number::ZERO);
+    }
+}
+
+fn is_value(number: &Number) -> bool {
+    match number {
+        Number::Value(_) => true,
+        Number::Formula(_) | Number::Adjusted { .. } | Number::PerSize { .. } => false,
+    }
+}

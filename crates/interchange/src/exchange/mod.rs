@@ -1,0 +1,28 @@
+//! Patterns of every format: one way in, [`read`], and one way out, [`write`].
+//!
+//! Neither opens a file: whoever calls brings the bytes and takes the files that were written. Decisions on
+//! what a file leaves open are returned as [`Guess`]es, each with the option that decides otherwise; what a
+//! format has no place for is returned as [`Loss`]es, by kind and number.
+//!
+//! # Decided with
+//! - [`crate::recognise::FileKind`]: what a file is, by its content;
+//! - [`crate::exchange::format::Format`]: formats, their words and endings;
+//! - [`crate::exchange::contents::Content`]: what a document holds, and which format has a place for it;
+//! - [`crate::native`], [`crate::garmentcode`]: readers and writers of the formats.
+
+mod contents;
+mod format;
+mod guess;
+mod loss;
+mod reading;
+mod writing;
+
+#[cfg(test)]
+mod tests;
+
+pub use contents::Content;
+pub use format::Format;
+pub use guess::Guess;
+pub use loss::Loss;
+pub use reading::{Companion, ReadOptions, Reading, read};
+pub use writing::{SizedDraft, WriteSource, Writing, Written, write};

@@ -1,0 +1,174 @@
+//! Patterns read from bytes.
+
+use super::{Format, Guess, Loss};
+use crate::dxf::read_dxf;
+use crate::native::{Fitting, PatternFile};
+use crate::{ExpectedKind, FileKind, FormatError, read_document, read_garmentcode};
+use serde::{Deserialize, Serialize};
+use toile_pattern::{DisplayUnit, Pattern};
+
+/// Answers to what a file may leave open; without them the reader decides, and returns its decisions as
+/// [`Guess`]es.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ReadOptions {
+    /// The format, in place of the one that the content shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub format: Option<Format>,
+    /// Unit of the file's coordinates, in place of the one that the file states or its size suggests.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<DisplayUnit>,
+    /// Distance from the outline inwards to the sew line (m), in a file that has cut lines alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub allowance_inside: Option<f64>,
+}
+
+impl ReadOptions {
+    /// Whether nothing is answered.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// A further file that a pattern needs: a table of grade rules or of measurements.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Companion {
+    /// Its file name, for messages.
+    pub name: String,
+    /// Its content.
+    pub bytes: Vec<u8>,
+}
+
+/// A pattern that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The pattern.
+    pub pattern: Pattern,
+    /// Fitting of the garment; files of other programs have none.
+    pub fitting: Fitting,
+    /// Format of the file.
+    pub format: Format,
+    /// Decisions on what the file leaves open.
+    pub guesses: Vec<Guess>,
+    /// Contents of the file that were left out.
+    pub losses: Vec<Loss>,
+    /// Notes on contents that were taken otherwise than they stand there, with their places.
+    pub notes: Vec<String>,
+}
+
+impl Reading {
+    /// A reading without guesses, losses and notes.
+    fn plain(pattern: Pattern, format: Format) -> Self {
+        Self {
+            pattern,
+            fitting: Fitting::default(),
+            format,
+            guesses: Vec::new(),
+            losses: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// All notes in words: those of the format, then guesses and losses.
+    pub fn words(&self) -> Vec<String> {
+        let notes = self.notes.iter().cloned();
+        let guesses = self.guesses.iter().map(ToString::to_string);
+        let losses = self.losses.iter().map(|loss| format!("left out: {loss}"));
+        notes.chain(guesses).chain(losses).collect()
+    }
+}
+
+/// Reads a pattern of any format that is known here.
+///
+/// # Errors
+/// The bytes are of another kind, named with the command that takes it; or they are damaged: the fault, its
+/// place and a remedy.
+pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
+    let format = match options.format {
+        Some(format) => format,
+        None => {
+            ExpectedKind::Pattern.check(bytes)?;
+            let kind = FileKind::of(bytes);
+            let known = kind.and_then(Format::of_kind);
+            // A damaged file goes to the native reader, which says where it is damaged.
+            known.unwrap_or(if looks_like_garmentcode(bytes) {
+                Format::GarmentCode
+            } else {
+                Format::Native
+            })
+        }
+    };
+    refuse_unused(format, options)?;
+    match format {
+        Format::Native => {
+            let PatternFile {
+                pattern,
+                fitting,
+                notes,
+            } = read_document(text(bytes)?)?;
+            Ok(Reading {
+                fitting,
+                notes: notes.iter().map(ToString::to_string).collect(),
+                ..Reading::plain(pattern, format)
+            })
+        }
+        Format::DxfAama | Format::DxfAstm => {
+            let reading = read_dxf(bytes, options)?;
+            // What is asked for holds against the signs of the file.
+            Ok(Reading {
+                guesses: reading.guesses,
+                losses: reading.losses,
+                ..Reading::plain(reading.pattern, options.format.unwrap_or(reading.format))
+            })
+        }
+        Format::GarmentCode => {
+            let reading = read_garmentcode(text(bytes)?)?;
+            Ok(Reading {
+                notes: reading.notes.iter().map(ToString::to_string).collect(),
+                ..Reading::plain(reading.pattern, format)
+            })
+        }
+    }
+}
+
+/// Whether damaged JSON is rather a GarmentCode specification than a native file.
+fn looks_like_garmentcode(bytes: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    !text.contains("\"toile\"") && text.contains("\"panels\"")
+}
+
+/// Refuses answers to questions that a format does not ask.
+fn refuse_unused(format: Format, options: &ReadOptions) -> Result<(), FormatError> {
+    let unused = match format {
+        Format::Native | Format::GarmentCode => vec![
+            ("--unit", options.unit.is_some()),
+            ("--inside", options.allowance_inside.is_some()),
+        ],
+        Format::DxfAama | Format::DxfAstm => Vec::new(),
+    };
+    match unused.into_iter().find(|(_, is_given)| *is_given) {
+        None => Ok(()),
+        Some((option, _)) => Err(FormatError::new(
+            "the options",
+            format!(
+                "{option} is given, which files of {} say themselves",
+                format.title()
+            ),
+            format!("leave {option} out"),
+        )),
+    }
+}
+
+/// The text of a file in UTF-8, without the mark that editors on Windows begin it with.
+fn text(bytes: &[u8]) -> Result<&str, FormatError> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let before = &bytes[..error.valid_up_to()];
+        let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+        FormatError::new(
+            format!("line {line}"),
+            "the text is not UTF-8",
+            "save it as UTF-8",
+        )
+    })?;
+    Ok(text.trim_start_matches('\u{feff}'))
+}
