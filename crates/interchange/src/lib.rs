@@ -16,6 +16,7 @@ mod error;
 mod exchange;
 mod fabric_file;
 mod fabric_test;
+mod file_kind;
 mod frames;
 mod garmentcode;
 mod gltf;
@@ -73,6 +74,7 @@ pub use exchange::{
 };
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};
+pub use file_kind::FileKind;
 pub use frames::{
     Frame, FrameHead, FrameSection, FrameSurface, FrameWriter, Frames, RestShape, read_frames,
 };
@@ -110,7 +112,7 @@ pub use pc2::{PointCache, read_pc2, write_pc2};
 pub use ply::read_ply;
 pub use print::{Lines, Paper, PrintJob, PrintLayer, PrintPiece, Tile, TitleBlock};
 pub use proportions::{proportion_boxes, read_proportions};
-pub use recognise::{ExpectedKind, FileKind};
+pub use recognise::ExpectedKind;
 pub use scene::{
     AirFile, DampingFile, ElasticFile, EndFile, MeshesFile, ObjectFile, SceneFile, TransformFile,
     read_scene,

@@ -8,7 +8,7 @@
 //! - [`crate::measurements_seamly`] (`choose`), [`crate::measurements_json::read_sized_measurements`]: one of
 //!   several sizes;
 //! - [`crate::measurements_garmentcode`] (`DEGREES`): angles, by hand;
-//! - [`crate::xml`], [`crate::recognise::FileKind`]: XML; kinds of files told apart.
+//! - [`crate::xml`], [`crate::file_kind::FileKind`]: XML; kinds of files told apart.
 
 use crate::FormatError;
 use toile_measure::{FREESEWING, Measurements, Origin, is_angle, translated};

@@ -6,7 +6,7 @@
 
 use super::allowance::{Width, nearest, width};
 use super::corners::{corners, is_straight};
-use super::piece::{DrawnLine, DrawnPattern, DrawnPiece, signed_area};
+use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece, signed_area};
 use super::spline;
 use crate::Loss;
 use crate::part_names::part_name;
@@ -22,6 +22,10 @@ use toile_pattern::{
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
 const ON_VERTEX: f64 = 2e-4;
+/// Largest distance of a notch from the line of an edge that it belongs to beyond the corner (m).
+const ON_LINE: f64 = 2e-4;
+/// Longest way from a corner of the sew line to the notch on the cut line that belongs to it (m).
+const MAX_REACH: f64 = 0.06;
 /// Room between pieces that are laid side by side on the table (m).
 const ROOM: f64 = 0.03;
 /// Width of a row of pieces on the table (m).
@@ -148,9 +152,14 @@ impl Builder {
             drawing.line(format!("line {}", k + 1), LineKind::Internal, built.edges);
         }
         for (k, notch) in piece.notches.iter().enumerate() {
-            let Some(at) = self.mark(&outline, &points, &corners, notch.at) else {
+            let Some(at) = self.mark(&outline, &points, &corners, notch) else {
                 continue;
             };
+            // A notch at a corner is cut on both cut lines that meet there.
+            let mut known = drawing.panel.notches.iter();
+            if known.any(|known| known.at == at && known.kind == notch.kind) {
+                continue;
+            }
             let id = drawing.id();
             drawing.panel.notches.push(Notch {
                 id,
@@ -375,9 +384,13 @@ impl Builder {
         outline: &DrawnLine,
         points: &[PointId],
         corners: &[usize],
-        place: Vec2,
+        notch: &DrawnNotch,
     ) -> Option<Mark> {
         let vertices = outline.in_size(self.base);
+        let place = notch.at;
+        if let Some(corner) = corner_of(place, vertices, corners) {
+            return Some(Mark::corner(points[corner]));
+        }
         let found = nearest(place, vertices)?;
         let count = vertices.len();
         let place = found.chord as f64 + found.share;
@@ -393,19 +406,41 @@ impl Builder {
         let from = corners[c];
         let next = corners[(c + 1) % corners.len()];
         let to = if next > from { next } else { next + count };
-        let along = if place >= from as f64 {
-            place
-        } else {
-            place + count as f64
+        let [from_place, to_place] = [from, to].map(|k| k as f64);
+        let after_from = |place: f64| match place >= from_place {
+            true => place,
+            false => place + count as f64,
         };
+        let along = after_from(place);
         let share = |size: usize| {
             let own = outline.in_size(size);
+            // The place of its own in this size, if that lies between the same corners.
+            let given = notch.in_sizes.get(size).copied().flatten();
+            let found = given.and_then(|at| nearest(at, own));
+            let found = found.map(|found| after_from(found.chord as f64 + found.share));
+            let along = found.filter(|along| *along <= to_place).unwrap_or(along);
             let length = |a: f64, b: f64| length_between(own, a, b);
-            length(from as f64, along) / length(from as f64, to as f64).max(f64::MIN_POSITIVE)
+            length(from_place, along) / length(from_place, to_place).max(f64::MIN_POSITIVE)
         };
         let ends = [points[from], points[to % count]];
         Some(Mark::between(ends, self.number(share)))
     }
+}
+
+/// The corner of a sew line that a place on the cut line belongs to: it lies on the line of one of the edges
+/// that meet there, beyond the corner.
+fn corner_of(place: Vec2, vertices: &[Vec2], corners: &[usize]) -> Option<usize> {
+    let count = vertices.len();
+    let beyond = |corner: usize, before: usize| {
+        let along = vertices[corner] - vertices[before % count];
+        let length = along.norm();
+        let out = place - vertices[corner];
+        let reach = out.dot(&along) / length;
+        let off = (along.perp(&out) / length).abs();
+        off <= ON_LINE && reach > ON_LINE && reach <= MAX_REACH
+    };
+    let mut all = corners.iter().copied();
+    all.find(|&corner| beyond(corner, corner + count - 1) || beyond(corner, corner + 1))
 }
 
 /// Length of a closed line between two places, each the index of a vertex and the share of the chord after it.

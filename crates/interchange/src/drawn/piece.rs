@@ -33,7 +33,7 @@ pub(crate) struct DrawnPiece {
     pub holes: Vec<DrawnLine>,
     /// Lines drawn inside.
     pub inside: Vec<DrawnLine>,
-    /// Notches in the base size.
+    /// Notches.
     pub notches: Vec<DrawnNotch>,
     /// Direction of the warp (rad), if the file draws a grain line.
     pub grain: Option<f64>,
@@ -53,10 +53,12 @@ pub(crate) struct DrawnLine {
 }
 
 /// A notch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DrawnNotch {
-    /// Its place on or beside the outline (m).
+    /// Its place on or beside the outline in the base size (m).
     pub at: Vec2,
+    /// Its places in all sizes (m), where the file has them; else it keeps its share between two vertices.
+    pub in_sizes: Vec<Option<Vec2>>,
     /// Its shape.
     pub kind: NotchKind,
 }

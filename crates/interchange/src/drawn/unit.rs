@@ -5,7 +5,7 @@ use toile_pattern::DisplayUnit;
 use toile_pattern::fields::Choice;
 
 /// Sizes that the largest piece of a garment may have (m).
-const LARGEST_PIECE: [f64; 2] = [0.2, 2.5];
+const PIECE_SIZES: [f64; 2] = [0.2, 2.5];
 
 /// Units that are tried where the stated one does not fit, the likeliest first: those of the same system come
 /// before others.
@@ -30,7 +30,7 @@ pub(crate) fn unit(
     }
     let fits = |unit: &DisplayUnit| {
         let size = largest * unit.metres();
-        (LARGEST_PIECE[0]..=LARGEST_PIECE[1]).contains(&size)
+        (PIECE_SIZES[0]..=PIECE_SIZES[1]).contains(&size)
     };
     if let Some(stated) = stated.filter(fits) {
         return (stated, None);

@@ -66,6 +66,16 @@ pub(super) struct BlockLine {
     pub is_closed: bool,
 }
 
+impl BlockLine {
+    /// Its length, without the way back to its start.
+    pub fn length(&self) -> f64 {
+        self.points
+            .windows(2)
+            .map(|pair| (pair[1] - pair[0]).norm())
+            .sum()
+    }
+}
+
 /// A piece in one size as its block has it, in the units of the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockPiece {

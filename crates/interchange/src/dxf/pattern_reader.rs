@@ -6,7 +6,9 @@
 use super::block_piece::{BlockLine, BlockPiece, Layer};
 use super::drawing::{Block, Drawn, DxfDrawing, Insert};
 use super::labels::Labels;
-use crate::drawn::allowance::{distance, is_evenly_inside, is_inside, nearest};
+use super::outlines::split;
+use super::sizes::sizes;
+use crate::drawn::allowance::{distance, is_evenly_inside, nearest};
 use crate::drawn::builder::document;
 use crate::drawn::inset::inset;
 use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece, signed_area};
@@ -14,7 +16,7 @@ use crate::drawn::unit::unit;
 use crate::{Format, FormatError, Guess, Loss, ReadOptions};
 use std::collections::BTreeMap;
 use toile_geometry::{Bounds2, Vec2};
-use toile_pattern::{Cut, DisplayUnit, Pattern};
+use toile_pattern::{Cut, DisplayUnit, NotchKind, Pattern};
 
 /// Largest distance of a mark from the vertex that it names (m).
 const ON_VERTEX: f64 = 5e-4;
@@ -94,6 +96,27 @@ struct Reader {
     style: Labels,
     guesses: Vec<Guess>,
     losses: Vec<Loss>,
+}
+
+/// The notches of a piece, with their places in those sizes whose blocks have as many.
+fn notches(
+    own: &BlockPiece,
+    sized: &BTreeMap<usize, BlockPiece>,
+    (count, unit): (usize, f64),
+) -> Vec<DrawnNotch> {
+    let of = |(k, &(at, kind)): (usize, &(Vec2, NotchKind))| {
+        let in_size = |size: usize| {
+            let piece = sized.get(&size)?;
+            let is_alike = piece.notches.len() == own.notches.len();
+            is_alike.then(|| piece.notches[k].0 * unit)
+        };
+        DrawnNotch {
+            at: at * unit,
+            in_sizes: (0..count).map(in_size).collect(),
+            kind,
+        }
+    };
+    own.notches.iter().enumerate().map(of).collect()
 }
 
 /// A line placed as an insert says.
@@ -305,7 +328,12 @@ impl Reader {
             // A piece that the base size lacks is the same in all sizes.
             sized.insert(base, first);
         }
-        let count = |piece: &BlockPiece| piece.cut.first().map_or(0, |line| line.points.len());
+        // The line that the panel becomes: the sew line where there is one.
+        let count = |piece: &BlockPiece| {
+            let sew = piece.sew.iter().find(|line| line.is_closed);
+            sew.or(piece.cut.first())
+                .map_or(0, |line| line.points.len())
+        };
         let Some(expected) = sized.get(&base).map(count) else {
             return sized;
         };
@@ -400,18 +428,11 @@ impl Reader {
             cut_line: is_found.then_some(cut_points),
             holes: holes.collect(),
             inside: inside_lines,
-            notches: own
-                .notches
-                .iter()
-                .map(|&(at, kind)| DrawnNotch {
-                    at: at * unit,
-                    kind,
-                })
-                .collect(),
+            notches: notches(own, sized, (count, unit)),
             grain: own
                 .grain
                 .iter()
-                .max_by(|a, b| length(a).total_cmp(&length(b)))
+                .max_by(|a, b| a.length().total_cmp(&b.length()))
                 .map(|line| {
                     let along = line.points[line.points.len() - 1] - line.points[0];
                     along.y.atan2(along.x)
@@ -551,139 +572,5 @@ impl Reader {
                 });
             }
         }
-    }
-}
-
-fn length(line: &BlockLine) -> f64 {
-    line.points
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).norm())
-        .sum()
-}
-
-/// The pieces of a block: one for each closed cut line that lies in no other, with the marks and lines within
-/// it; none for a block without a closed cut line. Cut lines within others are cut out.
-fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
-    let cut = std::mem::take(&mut piece.cut);
-    let mut outer: Vec<BlockLine> = Vec::new();
-    for line in cut {
-        let first = line.points[0];
-        match outer.iter().any(|known| is_inside(first, &known.points)) {
-            true => piece.cutouts.push(line),
-            false => outer.push(line),
-        }
-    }
-    if outer.len() < 2 {
-        let Some(line) = outer.pop() else {
-            return Vec::new();
-        };
-        piece.cut = vec![line];
-        return vec![piece];
-    }
-    let of = |(k, line): (usize, BlockLine)| {
-        let ring = line.points.clone();
-        let on = |p: &Vec2| {
-            let gap = 1e-3 * length(&line);
-            is_inside(*p, &ring) || nearest(*p, &ring).is_some_and(|found| found.distance <= gap)
-        };
-        let lines = |all: &[BlockLine]| -> Vec<BlockLine> {
-            all.iter()
-                .filter(|line| on(&line.points[0]))
-                .cloned()
-                .collect()
-        };
-        let points =
-            |all: &[Vec2]| -> Vec<Vec2> { all.iter().copied().filter(|p| on(p)).collect() };
-        let mut own = BlockPiece {
-            sew: lines(&piece.sew),
-            internal: lines(&piece.internal),
-            cutouts: lines(&piece.cutouts),
-            mirror: lines(&piece.mirror),
-            grain: lines(&piece.grain),
-            turn_points: points(&piece.turn_points),
-            curve_points: points(&piece.curve_points),
-            notches: piece
-                .notches
-                .iter()
-                .copied()
-                .filter(|(at, _)| on(at))
-                .collect(),
-            drills: points(&piece.drills),
-            rules: piece
-                .rules
-                .iter()
-                .copied()
-                .filter(|(at, _)| on(at))
-                .collect(),
-            cut: vec![line.clone()],
-            ..piece.clone()
-        };
-        if k > 0 {
-            own.labels.add_to_name(&format!(" {}", k + 1));
-            own.block = format!("{} {}", own.block, k + 1);
-        }
-        own
-    };
-    outer.into_iter().enumerate().map(of).collect()
-}
-
-/// Names of the sizes, from small to large: numbers by value, letters by the trade's order, others as the file
-/// has them. Empty if the pieces have one size only.
-fn sizes(pieces: &[(String, Vec<BlockPiece>)]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for piece in pieces.iter().flat_map(|(_, blocks)| blocks) {
-        if let Some(size) = piece.size().filter(|size| !names.contains(size)) {
-            names.push(size);
-        }
-    }
-    if names.len() < 2 {
-        return Vec::new();
-    }
-    let numbers: Option<Vec<f64>> = names.iter().map(|name| name.parse().ok()).collect();
-    let letters: Option<Vec<f64>> = names.iter().map(|name| letter_rank(name)).collect();
-    if let Some(ranks) = numbers.or(letters) {
-        let mut order: Vec<usize> = (0..names.len()).collect();
-        order.sort_by(|&a, &b| ranks[a].total_cmp(&ranks[b]));
-        return order.into_iter().map(|k| names[k].clone()).collect();
-    }
-    names
-}
-
-/// Rank of a size in letters, as in XS, M, 2XL; `None` for other words.
-fn letter_rank(name: &str) -> Option<f64> {
-    let name = name.to_uppercase();
-    let (digits, letters) = name.split_at(name.find(|c: char| !c.is_ascii_digit())?);
-    let (xs, last) = letters.split_at(letters.len().checked_sub(1)?);
-    if !xs.chars().all(|c| c == 'X') {
-        return None;
-    }
-    let times = match digits.parse::<f64>() {
-        Ok(times) if xs.len() == 1 => times,
-        Ok(_) => return None,
-        Err(_) => xs.len() as f64,
-    };
-    match last {
-        "S" => Some(-1.0 - times),
-        "M" if times == 0.0 => Some(0.0),
-        "L" => Some(1.0 + times),
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::letter_rank;
-
-    #[test]
-    fn letters_of_sizes_have_their_order() {
-        let names = ["3XS", "XXS", "XS", "S", "M", "L", "XL", "2XL", "XXXL"];
-        let ranks: Vec<f64> = names
-            .iter()
-            .map(|name| letter_rank(name).unwrap())
-            .collect();
-        assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
-        assert_eq!(letter_rank("38"), None);
-        assert_eq!(letter_rank("TALL"), None);
-        assert_eq!(letter_rank(""), None);
     }
 }

@@ -10,7 +10,12 @@ use toile_geometry::{Bounds2, Vec2};
 /// A DXF file being written.
 pub(crate) struct DxfWriter {
     layers: Vec<(&'static str, u8)>,
+    /// Finished blocks.
+    blocks: String,
+    /// What is written now: a block, or what is drawn outside of blocks.
     entities: String,
+    /// What is drawn outside of blocks, while a block is written.
+    outside: String,
     extent: Bounds2,
 }
 
@@ -48,7 +53,9 @@ impl DxfWriter {
     pub fn new(layers: Vec<(&'static str, u8)>) -> Self {
         Self {
             layers,
+            blocks: String::new(),
             entities: String::new(),
+            outside: String::new(),
             extent: Bounds2::of([]),
         }
     }
@@ -82,6 +89,52 @@ impl DxfWriter {
         }
         self.group(0, "SEQEND");
         self.group(8, layer);
+    }
+
+    /// Begins a block, whose origin is that of the drawing: what follows is drawn in it.
+    pub fn begin_block(&mut self, name: &str) {
+        self.outside = std::mem::take(&mut self.entities);
+        self.group(0, "BLOCK");
+        self.group(8, "1");
+        self.group(2, name);
+        self.group(70, "64");
+        self.point(10, [0.0, 0.0]);
+        self.group(3, name);
+    }
+
+    /// Ends the block, and puts it into the drawing where it lies.
+    pub fn end_block(&mut self, name: &str) {
+        self.group(0, "ENDBLK");
+        self.group(8, "1");
+        self.blocks += &std::mem::take(&mut self.entities);
+        self.entities = std::mem::take(&mut self.outside);
+        self.group(0, "INSERT");
+        self.group(8, "1");
+        self.group(2, name);
+        self.point(10, [0.0, 0.0]);
+    }
+
+    /// A point (m) with further values by their group codes, in the units of the file.
+    pub fn mark(&mut self, layer: &str, at: Vec2, further: &[(u32, f64)]) {
+        let at = [at.x * 1e3, at.y * 1e3];
+        self.group(0, "POINT");
+        self.group(8, layer);
+        self.group(10, &number(at[0]));
+        self.group(20, &number(at[1]));
+        let z = further.iter().find(|(code, _)| *code == 30);
+        self.group(30, &number(z.map_or(0.0, |(_, value)| *value)));
+        for (code, value) in further.iter().filter(|(code, _)| *code != 30) {
+            self.group(*code, &number(*value));
+        }
+    }
+
+    /// A text that programs read, at a point (m).
+    pub fn label(&mut self, layer: &str, words: &str, at: Vec2) {
+        self.group(0, "TEXT");
+        self.group(8, layer);
+        self.point(10, [at.x * 1e3, at.y * 1e3]);
+        self.group(40, "5");
+        self.group(1, &plain(words));
     }
 
     /// A text with the middle of its baseline at a point (m), letter height (m) and rotation (rad).
@@ -121,7 +174,13 @@ impl DxfWriter {
                 "0\nLAYER\n2\n{name}\n70\n64\n62\n{colour}\n6\nCONTINUOUS\n"
             );
         }
-        text += "0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+        text += "0\nENDTAB\n0\nENDSEC\n";
+        if !self.blocks.is_empty() {
+            text += "0\nSECTION\n2\nBLOCKS\n";
+            text += &self.blocks;
+            text += "0\nENDSEC\n";
+        }
+        text += "0\nSECTION\n2\nENTITIES\n";
         text += &self.entities;
         text + "0\nENDSEC\n0\nEOF\n"
     }

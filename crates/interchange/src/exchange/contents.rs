@@ -3,107 +3,44 @@
 //! Every field of the document is taken apart here, and every kind of contents is decided on for every
 //! format: a new field, kind or format does not compile until it is answered for.
 
-use super::{Format, Loss};
+use super::{Content, Format, Loss};
 use strum::{EnumCount, VariantArray};
 use toile_pattern::{
     Cut, Edge, EdgeCorner, Line, LineKind, Notch, Number, Operation, OperationKind, Panel, Pattern,
     PointRule, Seam, Sheet, Source, WornRule,
 };
 
-/// A kind of contents of a document.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, EnumCount, VariantArray)]
-pub enum Content {
-    /// Tables of measurements.
-    Sizes,
-    /// Named numbers.
-    Variables,
-    /// Numbers given by formulas, or by size.
-    Formulas,
-    /// Fabrics with their figures.
-    Fabrics,
-    /// Points placed by a construction, not by coordinates.
-    Constructions,
-    /// Guides.
-    Guides,
-    /// Panels.
-    Panels,
-    /// Lines drawn inside panels.
-    InternalLines,
-    /// Holes.
-    Holes,
-    /// Notches.
-    Notches,
-    /// Darts, those pivoted and those inside a panel too.
-    Darts,
-    /// Panels cut on the fold.
-    Folds,
-    /// Cuts that are spread.
-    Spreads,
-    /// Panels divided into sides.
-    Splits,
-    /// Lines that an operation inserts.
-    InsertedLines,
-    /// Pleats.
-    Pleats,
-    /// Allowances along edges.
-    Allowances,
-    /// Shapes of the cut line at corners.
-    Corners,
-    /// Grains that are not upright.
-    Grains,
-    /// Panels cut more than once.
-    Copies,
-    /// Places of panels on the body.
-    Places,
-    /// Seams.
-    Seams,
-    /// Eases and gathers of seams.
-    Eases,
-    /// Markers.
-    Markers,
-    /// Wearer, fabric and other garments that the garment is tried on with.
-    Fitting,
-}
-
 impl Content {
-    /// The kind in words, in the plural.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Sizes => "sizes",
-            Self::Variables => "variables",
-            Self::Formulas => "formulas",
-            Self::Fabrics => "fabrics",
-            Self::Constructions => "constructed points",
-            Self::Guides => "guides",
-            Self::Panels => "panels",
-            Self::InternalLines => "internal lines",
-            Self::Holes => "holes",
-            Self::Notches => "notches",
-            Self::Darts => "darts",
-            Self::Folds => "folds",
-            Self::Spreads => "spread cuts",
-            Self::Splits => "splits",
-            Self::InsertedLines => "inserted lines",
-            Self::Pleats => "pleats",
-            Self::Allowances => "seam allowances",
-            Self::Corners => "corners of the cut line",
-            Self::Grains => "grains",
-            Self::Copies => "copies of panels",
-            Self::Places => "places on the body",
-            Self::Seams => "seams",
-            Self::Eases => "eases and gathers",
-            Self::Markers => "markers",
-            Self::Fitting => "the fitting",
-        }
-    }
-
     /// Reason why a format does not carry this kind, or carries its result alone; `None`: it carries it.
     fn lost_in(self, format: Format) -> Option<&'static str> {
         match format {
             Format::Native => None,
             Format::GarmentCode => self.lost_in_garmentcode(),
-            // Not written yet.
-            Format::DxfAama | Format::DxfAstm => None,
+            Format::DxfAama | Format::DxfAstm => self.lost_in_dxf(),
+        }
+    }
+
+    fn lost_in_dxf(self) -> Option<&'static str> {
+        /// The format has no field for it.
+        const NO_PLACE: Option<&str> = Some("the format has no place for them");
+        match self {
+            Self::Panels
+            | Self::InternalLines
+            | Self::Holes
+            | Self::Notches
+            | Self::Grains
+            | Self::Copies => None,
+            Self::Sizes => Some("written as shapes, without their measurements"),
+            Self::Variables | Self::Guides | Self::Places | Self::Seams | Self::Eases => NO_PLACE,
+            Self::Markers | Self::Fitting => NO_PLACE,
+            Self::Fabrics => Some("written by their names alone"),
+            Self::Formulas | Self::Constructions => Some("written as drafted"),
+            Self::Darts | Self::Spreads | Self::Splits | Self::Pleats | Self::InsertedLines => {
+                Some("written as drafted")
+            }
+            Self::Folds => Some("written unfolded"),
+            Self::Allowances => Some("written as cut and sew lines"),
+            Self::Corners => Some("written as the cut line that they give"),
         }
     }
 

@@ -46,8 +46,8 @@ impl Format {
         let name = name.to_lowercase();
         let all = Self::all().iter().copied().filter(|of| of.is_written());
         let ends = all.filter(|of| name.ends_with(of.ending()));
-        // The longest ending decides: .toile.json before .json.
-        ends.max_by_key(|of| of.ending().len())
+        // The longest ending decides, .toile.json before .json; of formats with one ending the first.
+        ends.min_by_key(|of| std::cmp::Reverse(of.ending().len()))
     }
 
     /// The ending of the names of its files.
@@ -111,8 +111,7 @@ impl Format {
     /// Whether this program writes it.
     pub fn is_written(self) -> bool {
         match self {
-            Self::Native | Self::GarmentCode => true,
-            Self::DxfAama | Self::DxfAstm => false,
+            Self::Native | Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
         }
     }
 

@@ -5,24 +5,30 @@
 //! format has no place for is returned as [`Loss`]es, by kind and number.
 //!
 //! # Decided with
-//! - [`crate::recognise::FileKind`]: what a file is, by its content;
+//! - [`crate::file_kind::FileKind`]: what a file is, by its content;
 //! - [`crate::exchange::format::Format`]: formats, their words and endings;
-//! - [`crate::exchange::contents::Content`]: what a document holds, and which format has a place for it;
+//! - [`crate::exchange::content::Content`], [`crate::exchange::contents`]: what a document holds, and which format
+//!   has a place for it;
 //! - [`crate::native`], [`crate::garmentcode`]: readers and writers of the formats.
 
+mod content;
 mod contents;
 mod format;
 mod guess;
 mod loss;
+mod read_options;
 mod reading;
+mod write_source;
 mod writing;
 
 #[cfg(test)]
 mod tests;
 
-pub use contents::Content;
+pub use content::Content;
 pub use format::Format;
 pub use guess::Guess;
 pub use loss::Loss;
-pub use reading::{Companion, ReadOptions, Reading, read};
-pub use writing::{SizedDraft, WriteSource, Writing, Written, write};
+pub use read_options::{Companion, ReadOptions};
+pub use reading::{Reading, read};
+pub use write_source::{SizedDraft, WriteSource, Writing, Written};
+pub use writing::write;
