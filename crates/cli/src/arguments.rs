@@ -6,6 +6,7 @@
 //!   session, without one, checks;
 //! - [`crate::nest_commands`], [`crate::print_commands`], [`crate::lab_commands`]: markers, prints,
 //!   laboratory;
+//! - [`crate::batch_commands`]: commands as jobs of a batch;
 //! - [`crate::nest_arguments::Nest`], [`crate::print_arguments::Print`],
 //!   [`crate::body_options::BodyOptions`], [`crate::values`]: options of several values and of single
 //!   commands;
@@ -16,11 +17,12 @@
 //! By hand: a row in the README, words in `docs/GUIDE.md`, names of fabrics in the help of `Make`, wrong uses
 //! in `tests/wrong-uses/table.toml`.
 
+use crate::batch_arguments::{Batch, JobTask};
 use crate::body_options::{BodyOptions, StanceOptions};
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
 use crate::read_options::ReadArguments;
-use crate::values::{blend, export_format, one_size, panel_origin, sizes, word};
+use crate::values::{blend, direction, export_format, one_size, panel_origin, share, sizes, word};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
@@ -80,8 +82,25 @@ pub enum Task {
     Mesh(Mesh),
     /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.
     Body(Box<Body>),
+    /// Flatten an open surface to a panel of least energy of its fabric, with darts where it would stretch too far.
+    ///
+    /// Writes the panel as a pattern (NAME.toile.json), and beside it NAME-flatten.json (SI units) and NAME-strain.png
+    /// (stretch in %).
+    Flatten(Flatten),
     /// Convert a pattern between formats; lists what could not be carried over.
     Convert(Convert),
+    /// Do many jobs, each in a process of its own with limits of time and memory: every pattern in every size, fabric
+    /// and body.
+    ///
+    /// Interrupted or killed, the same command goes on where it was; several processes may share the folder. A job
+    /// that fails is a result, too: the others are done, and the exit status is 1. Writes report.json (figures of all
+    /// jobs), timing.json (times and paths), and jobs/ID/ with result.json and files of each job.
+    Batch(Batch),
+    /// Do one job of a batch, as schedulers run it; `toile batch --list` writes its file.
+    ///
+    /// Writes result.json and the folder files beside the job's file. Exit status 1 where the job failed. It ends when
+    /// a pipe on its standard input closes.
+    Job(JobTask),
     /// Do the commands of a journal again; what they write goes into one folder.
     Replay(Replay),
     /// Simulate a scene: objects, elastics, gravity (JSON, SI units; see docs/FORMATS.md).
@@ -437,6 +456,36 @@ pub struct Mesh {
     #[arg(long, value_name = "NAME", value_parser = one_size)]
     pub size: Option<String>,
     /// OBJ file to write (m).
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+/// `toile flatten`.
+#[derive(Debug, Args)]
+pub struct Flatten {
+    /// The surface: a mesh with one outline (OBJ or PLY, m).
+    pub mesh: PathBuf,
+    /// Direction of the grain in space, as in 0,1,0. Default: upwards.
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub grain: Option<[f64; 3]>,
+    /// Fabric: a name of the library, or a fabric file. Default: poplin.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub fabric: Option<String>,
+    /// Most stretch on 99 % of the area, either way.
+    #[arg(long, value_name = "SHARE", default_value = "2%", value_parser = share)]
+    pub strain: f64,
+    /// Most darts.
+    #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=20))]
+    pub darts: u8,
+    /// Distance by which the surface is moved out to its front first.
+    #[arg(
+        long,
+        value_name = "LENGTH",
+        default_value = "0mm",
+        allow_hyphen_values = true
+    )]
+    pub ease: Length,
+    /// Pattern to write (NAME.toile.json).
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use toile_session::{Watcher, is_logging};
 
 /// Exit status of a program that was interrupted.
-const INTERRUPTED: i32 = 130;
+pub const INTERRUPTED: i32 = 130;
 /// Steps of the bar.
 const STEPS: f64 = 1000.0;
 /// Time from one line to the next where there is no terminal.

@@ -6,9 +6,12 @@
 
 mod arguments;
 mod bar;
+mod batch_arguments;
+mod batch_commands;
 mod body_options;
 mod check_commands;
 mod convert_command;
+mod flatten_command;
 mod lab_commands;
 mod nest_arguments;
 mod nest_commands;
@@ -56,8 +59,11 @@ fn run(task: Task, output: &Output) -> Result<Made, Failure> {
         Task::Make(make) => return session_commands::make(&make, output),
         Task::Drape(drape) => return session_commands::drape(&drape, output),
         Task::Check(check) => check_commands::check(&check, output),
+        Task::Batch(batch) => return batch_commands::batch(&batch, output),
+        Task::Job(job) => return batch_commands::job(&job, output),
         Task::Replay(replay) => return session_commands::replay(&replay, output),
         Task::Convert(convert) => convert_command::convert(&convert, output),
+        Task::Flatten(flatten) => flatten_command::flatten(&flatten, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
         Task::Print(print) => print_commands::print(&print, output),
         Task::Nest(nest) => nest_commands::nest(&nest, output),

@@ -22,6 +22,8 @@ pub struct Failure {
     bad_input: bool,
     /// Whether the message names the file at fault.
     names_file: bool,
+    /// Whether files cannot be written.
+    unwritten: bool,
     report: Option<Value>,
 }
 
@@ -32,6 +34,7 @@ impl Failure {
             message: message.to_string(),
             bad_input: true,
             names_file: false,
+            unwritten: false,
             report: None,
         }
     }
@@ -42,6 +45,7 @@ impl Failure {
             message: message.to_string(),
             bad_input: false,
             names_file: false,
+            unwritten: false,
             report: None,
         }
     }
@@ -49,6 +53,11 @@ impl Failure {
     /// Whether what was given is at fault, and not the work on it.
     pub fn is_bad_input(&self) -> bool {
         self.bad_input
+    }
+
+    /// Whether files cannot be written: then neither what was given nor the work on it is at fault.
+    pub fn is_unwritten(&self) -> bool {
+        self.unwritten
     }
 
     /// What went wrong, with place and remedy.
@@ -95,6 +104,7 @@ impl From<SessionError> for Failure {
                 error,
                 SessionError::File(_) | SessionError::Format { .. } | SessionError::Faults { .. }
             ),
+            unwritten: matches!(&error, SessionError::File(file) if file.action != "read"),
             message: error.to_string(),
             report: None,
         }
@@ -109,6 +119,11 @@ pub struct Made {
 }
 
 impl Made {
+    /// The report for programs, and words for a bad verdict.
+    pub fn into_parts(self) -> (Value, Option<String>) {
+        (self.report, self.fault)
+    }
+
     /// What was made with the verdict on it, where there is one.
     pub fn judged(report: Value, verdict: Option<&Verdict>) -> Self {
         let bad = verdict.filter(|verdict| !verdict.is_sound());
@@ -137,6 +152,11 @@ impl Output {
     /// Words, or JSON.
     pub fn new(json: bool) -> Self {
         Self { json }
+    }
+
+    /// Neither words nor JSON, for a command within a job: its report is taken as a value.
+    pub fn silent() -> Self {
+        Self::new(true)
     }
 
     /// Says something to a person.

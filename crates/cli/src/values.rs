@@ -31,6 +31,34 @@ pub fn sizes(text: &str) -> Result<SizeSelection, String> {
     each.collect::<Result<_, _>>().map(SizeSelection::Named)
 }
 
+/// A share, as in 2% or 0.02.
+pub fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 && value * unit <= 1.0 => Ok(value * unit),
+        Ok(_) | Err(_) => {
+            Err("give a share above zero and up to 100%, as in 2% or 0.02".to_owned())
+        }
+    }
+}
+
+/// A direction in space, as in 0,1,0.
+pub fn direction(text: &str) -> Result<[f64; 3], String> {
+    let wrong = || "give three numbers with commas, not all zero, as in 0,1,0".to_owned();
+    let numbers: Vec<f64> = (text.split(','))
+        .map(|one| one.trim().parse().map_err(|_| wrong()))
+        .collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [x, y, z] if [x, y, z].iter().all(|n| n.is_finite()) && [x, y, z] != [0.0; 3] => {
+            Ok([x, y, z])
+        }
+        _ => Err(wrong()),
+    }
+}
+
 /// What an export writes, as in marker-dxf.
 pub fn export_format(text: &str) -> Result<ExportFormat, String> {
     ExportFormat::named(text).ok_or_else(|| {

@@ -19,6 +19,23 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     Staged::new(path, bytes)?.commit()
 }
 
+/// Writes a file atomically where none of that name is yet. Returns whether it was written: `false` if another
+/// process was first, whose file stays.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_new_atomically(path: &Path, bytes: &[u8]) -> Result<bool, FileError> {
+    let Staged { file, target } = Staged::new(path, bytes)?;
+    match file.persist_noclobber(&target) {
+        Ok(_) => {
+            sync_folder_of(&target);
+            Ok(true)
+        }
+        Err(error) if error.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        Err(error) => Err(FileError::from_io("write", &target, &error.error)),
+    }
+}
+
 /// Checks that files can be written into a folder, which need not exist yet. Nothing is left behind.
 ///
 /// # Errors
@@ -164,6 +181,16 @@ mod tests {
         write_atomically(&path, b"one").unwrap();
         write_atomically(&path, b"two, longer").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two, longer");
+        assert_eq!(names(folder.path()), ["a.json"]);
+    }
+
+    #[test]
+    fn a_file_that_is_there_is_not_written_anew() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.json");
+        assert!(write_new_atomically(&path, b"first").unwrap());
+        assert!(!write_new_atomically(&path, b"second").unwrap());
+        assert_eq!(fs::read(&path).unwrap(), b"first");
         assert_eq!(names(folder.path()), ["a.json"]);
     }
 

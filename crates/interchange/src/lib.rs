@@ -57,20 +57,21 @@ mod scene_motion;
 mod settings_reader;
 mod shown;
 mod svg_text;
+mod valentina;
 mod x3d;
 mod x3d_nodes;
 mod x3d_vrml;
 mod x3d_xml;
 mod xml;
 
-pub use atomic::{check_folder, write_all_atomically, write_atomically};
+pub use atomic::{check_folder, write_all_atomically, write_atomically, write_new_atomically};
 pub use bvh::read_bvh;
 pub use character_json::{read_character, write_character};
 pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
 pub use exchange::{
     Companion, Content, Format, Guess, Loss, ReadOptions, Reading, SizedDraft, WriteSource,
-    Writing, Written, read, write,
+    Writing, Written, companion_names, read, write,
 };
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};

@@ -80,6 +80,35 @@ pub fn read_seamly(
     Ok((refuse_empty(table)?, notes))
 }
 
+/// Rows of a measurement file, as written there.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SeamlyRows {
+    /// Size of the file's unit (m).
+    pub metres: f64,
+    /// Names and numbers in the file's units, also those that are zero.
+    pub rows: Vec<(String, f64)>,
+}
+
+/// The rows of a measurement file in the chosen size, with the file's names and units.
+///
+/// # Errors
+/// Those of [`read_seamly`].
+pub(crate) fn seamly_rows(text: &str, choice: SizeChoice) -> Result<SeamlyRows, FormatError> {
+    let xml = Xml::read(text, "save the file again, or correct the line")?;
+    let metres = unit_of(&xml)?;
+    let sizes = Sizes::of(&xml, metres)?;
+    let steps = match &sizes {
+        None if choice.is_given() => return Err(one_size()),
+        None => [0.0; 2],
+        Some(sizes) => sizes.choose(choice, &mut Vec::new())?,
+    };
+    let rows = rows_of(&xml, steps)?;
+    Ok(SeamlyRows {
+        metres,
+        rows: rows.into_iter().map(|row| (row.name, row.number)).collect(),
+    })
+}
+
 fn place(line: usize) -> String {
     format!("line {line}")
 }

@@ -38,7 +38,11 @@ impl FileKind {
             }
             Self::Obj | Self::Ply => Some("`toile body --mesh` and scenes take it"),
             Self::Bvh | Self::X3d => Some("`toile body --motion` takes it"),
-            Self::Pattern | Self::GarmentCode => Some("`toile make`, `check` and `nest` take it"),
+            Self::Pattern
+            | Self::GarmentCode
+            | Self::Dxf
+            | Self::ValentinaPattern
+            | Self::SeamlyPattern => Some("`toile make`, `check` and `nest` take it"),
             Self::Mannequin => Some("`toile make --body` and `toile body --mannequin` take it"),
             Self::Marker => Some("`toile check` and `toile nest --from` take it"),
             Self::MarkerSettings => Some("`toile nest --settings` takes it"),
@@ -53,12 +57,9 @@ impl FileKind {
             | Self::PostScript
             | Self::Archive
             | Self::Glb
-            | Self::Dxf
             | Self::Svg
             | Self::Html
             | Self::Hpgl
-            | Self::ValentinaPattern
-            | Self::SeamlyPattern
             | Self::FreeSewingPattern
             | Self::OtherXml
             | Self::Stl

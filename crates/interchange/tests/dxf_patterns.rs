@@ -101,7 +101,7 @@ impl File {
     }
 
     fn read(&self) -> Reading {
-        read(self.text().as_bytes(), &ReadOptions::default()).unwrap()
+        read(self.text().as_bytes(), &ReadOptions::default(), &[]).unwrap()
     }
 }
 
@@ -248,7 +248,7 @@ fn inches_are_read_and_a_wrong_unit_is_guessed() {
         unit: Some(toile_pattern::DisplayUnit::Inch),
         ..ReadOptions::default()
     };
-    let other = read(file.text().as_bytes(), &asked).unwrap();
+    let other = read(file.text().as_bytes(), &asked, &[]).unwrap();
     assert_near(area(&draft_of(&other.pattern, None)), 0.24 * 2.54 * 2.54);
     assert!(other.guesses.iter().all(|guess| guess.what != "unit"));
 }
@@ -270,7 +270,7 @@ fn names_in_gbk_are_read() {
         &text.as_bytes()[at + 4..],
     ]
     .concat();
-    let reading = read(&bytes, &ReadOptions::default()).unwrap();
+    let reading = read(&bytes, &ReadOptions::default(), &[]).unwrap();
     assert_eq!(reading.pattern.panels[0].name, "后片");
 }
 
@@ -446,7 +446,7 @@ fn an_allowance_that_is_asked_for_lies_inside_the_cut_line_but_on_the_fold() {
         allowance_inside: Some(0.01),
         ..ReadOptions::default()
     };
-    let reading = read(file.text().as_bytes(), &asked).unwrap();
+    let reading = read(file.text().as_bytes(), &asked, &[]).unwrap();
     assert_eq!(reading.guesses, []);
     let panel = &reading.pattern.panels[0];
     assert_eq!(panel.allowance, Number::Value(0.01));
@@ -455,7 +455,7 @@ fn an_allowance_that_is_asked_for_lies_inside_the_cut_line_but_on_the_fold() {
         allowance_inside: Some(0.3),
         ..ReadOptions::default()
     };
-    let reading = read(file.text().as_bytes(), &asked).unwrap();
+    let reading = read(file.text().as_bytes(), &asked, &[]).unwrap();
     assert_eq!(reading.losses[0].what, "the allowance that was asked for");
 }
 
@@ -512,6 +512,11 @@ fn outlines_without_blocks_are_pieces_and_a_drawing_without_any_is_refused() {
     let reading = file.read();
     assert_near(area(&draft_of(&reading.pattern, None)), 0.24);
     assert!(reading.guesses.iter().any(|guess| guess.what == "pieces"));
-    let empty = read(File::default().text().as_bytes(), &ReadOptions::default()).unwrap_err();
+    let empty = read(
+        File::default().text().as_bytes(),
+        &ReadOptions::default(),
+        &[],
+    )
+    .unwrap_err();
     assert!(empty.what.contains("no closed line"), "{empty}");
 }

@@ -58,7 +58,7 @@ fn written(pattern: &Pattern, drafts: &[SizedDraft], format: Format) -> Vec<u8> 
 }
 
 fn reread(bytes: &[u8]) -> Reading {
-    read(bytes, &ReadOptions::default()).unwrap()
+    read(bytes, &ReadOptions::default(), &[]).unwrap()
 }
 
 /// Largest distance of points from the boundary of a polygon (m).

@@ -309,8 +309,13 @@ fn checked(mut search: Search, count: usize) -> Result<Search, NestingError> {
     Ok(search)
 }
 
+/// Threads that run at once: as the variable of rayon says, which holds for all work of a process, else one a
+/// processor.
 fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
+    let said = std::env::var("RAYON_NUM_THREADS").ok();
+    let said = said.and_then(|text| text.parse().ok());
+    said.filter(|&count| count > 0)
+        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 /// Whether a marker has more pieces laid than another, or as many on clearly less fabric.

@@ -119,6 +119,14 @@ pub enum SessionError {
         /// The fault.
         what: String,
     },
+    /// A job of a batch was not done, for a reason that is none of its own.
+    #[error("job {id} was not done: {why}")]
+    Job {
+        /// Name of the job.
+        id: String,
+        /// The reason, with the remedy.
+        why: String,
+    },
     /// The watcher asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -146,7 +154,7 @@ impl SessionError {
                     | DrapeError::Scene { .. }
             ),
             Self::Marker(error) => error.is_bad_input(),
-            Self::Write { .. } | Self::Picture(_) | Self::Cancelled => false,
+            Self::Write { .. } | Self::Picture(_) | Self::Job { .. } | Self::Cancelled => false,
             Self::Format { .. }
             | Self::Faults { .. }
             | Self::Edit(_)

@@ -1,6 +1,7 @@
 //! Stamps of files that commands read: digests by which a later look tells what was changed.
 
 use crate::Command;
+use crate::digest::digest;
 use crate::input::read_file;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -71,12 +72,6 @@ impl Stamp {
 
 /// Most parts of a changed file that are named one by one.
 const MAX_NAMED: usize = 8;
-
-/// FNV-1a of bytes, 64 bits in hexadecimal digits (Fowler, Noll and Vo 1991).
-fn digest(bytes: &[u8]) -> String {
-    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step))
-}
 
 /// Digests of the fields of a JSON object, by name. A field that is a list has a digest for each item
 /// instead, by the item's name or number. Empty if the bytes are no JSON object.

@@ -6,6 +6,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 #![cfg_attr(not(test), deny(clippy::wildcard_enum_match_arm))]
 
+mod batch;
 mod bodies;
 mod choice;
 mod clips;
@@ -14,6 +15,7 @@ mod convert;
 mod crossings;
 mod crumple;
 mod derived;
+mod digest;
 mod drape;
 mod dressed_figure;
 mod error;
@@ -24,6 +26,7 @@ mod fabrics;
 mod figure_track;
 mod file_stamp;
 mod fitting;
+mod flattening;
 mod frame_counts;
 mod frames_export;
 mod garment_edit;
@@ -81,6 +84,10 @@ mod verdict;
 mod watched_search;
 mod watcher;
 
+pub use batch::{
+    BatchFolder, BatchRun, CheckArguments, Ended, Job, JobOutcome, JobResult, Limits, Part, Report,
+    Spec, Work, do_job, list_jobs, run_batch,
+};
 pub use bodies::{edit_body, open_body_edits, proportions_named, proportions_of_heads};
 pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::{Command, OtherGarment};
@@ -90,6 +97,7 @@ pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, FoundInFile};
 pub use export_format::{Export, ExportFormat};
 pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
+pub use flattening::{DartReport, FlattenOptions, FlattenReport, flatten_mesh};
 pub use frames_export::{FramesExport, FramesOutcome, export_frames};
 pub use garment_edit::{CannotFollow, GarmentEdit};
 pub use history::HistoryStep;

@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_body::Description;
 use toile_interchange::{
-    ExpectedKind, FileError, FormatError, MarkerFile, ReadOptions, Reading, SizeChoice, read,
-    read_mannequin, read_marker_json, read_sized_measurements,
+    Companion, ExpectedKind, FileError, FormatError, MarkerFile, ReadOptions, Reading, SizeChoice,
+    companion_names, read, read_mannequin, read_marker_json, read_sized_measurements,
 };
 use toile_measure::Measurements;
 
@@ -94,15 +94,58 @@ pub(crate) fn open_pattern_from(
         Some(text) => text.as_bytes().to_vec(),
         None => read_file(path)?,
     };
-    let mut opened = read(&bytes, &options.reading).map_err(|error| SessionError::Format {
-        path: PathBuf::from(path),
-        error,
-    })?;
+    let companions = companions(path, &bytes, &options.with)?;
+    let mut opened =
+        read(&bytes, &options.reading, &companions).map_err(|error| SessionError::Format {
+            path: PathBuf::from(path),
+            error,
+        })?;
     if opened.pattern.name.is_empty() {
         opened.pattern.name = stem(path);
     }
     opened.notes.extend(origin.settle(&mut opened.pattern));
     Ok(opened)
+}
+
+/// The files that belong to a pattern: those given, else those that it names, where they lie in its folder or
+/// where it says. A file that it names and that is not there is left to the reader.
+fn companions(
+    path: &Path,
+    bytes: &[u8],
+    given: &[PathBuf],
+) -> Result<Vec<Companion>, SessionError> {
+    let name = |path: &Path| {
+        let name = path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    };
+    if !given.is_empty() {
+        let each = given.iter().map(|file| {
+            Ok(Companion {
+                name: name(file),
+                bytes: read_file(file)?,
+            })
+        });
+        return each.collect();
+    }
+    if is_sample(path) || is_pipe(path) {
+        return Ok(Vec::new());
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut found = Vec::new();
+    for named in companion_names(bytes) {
+        // Files of other systems name folders with backslashes.
+        let named = named.replace('\\', "/");
+        let own = named.rsplit('/').next().unwrap_or_default();
+        let places = [folder.join(own), folder.join(&named)];
+        let place = places.iter().find(|place| place.is_file());
+        if let Some(place) = place {
+            found.push(Companion {
+                name: name(place),
+                bytes: read_file(place)?,
+            });
+        }
+    }
+    Ok(found)
 }
 
 /// Reads a `marker.json`.
@@ -183,7 +226,7 @@ fn stem(path: &Path) -> String {
 /// # Errors
 /// The text is not a pattern; with its place and a remedy.
 pub fn read_pattern_text(text: &str) -> Result<Reading, FormatError> {
-    read(text.as_bytes(), &ReadOptions::default())
+    read(text.as_bytes(), &ReadOptions::default(), &[])
 }
 
 /// Reads a table of body measurements: native JSON, GarmentCode YAML, Seamly, Valentina or

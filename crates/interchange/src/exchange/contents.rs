@@ -17,6 +17,7 @@ impl Content {
             Format::Native => None,
             Format::GarmentCode => self.lost_in_garmentcode(),
             Format::DxfAama | Format::DxfAstm => self.lost_in_dxf(),
+            Format::Valentina | Format::Seamly => Some("the format is not written"),
         }
     }
 

@@ -22,6 +22,10 @@ pub enum Format {
     DxfAama,
     /// DXF after ASTM D6673.
     DxfAstm,
+    /// A pattern of Valentina.
+    Valentina,
+    /// A pattern of Seamly2D.
+    Seamly,
 }
 
 impl Choice for Format {}
@@ -38,6 +42,8 @@ impl Format {
             Self::Native => FileKind::Pattern,
             Self::GarmentCode => FileKind::GarmentCode,
             Self::DxfAama | Self::DxfAstm => FileKind::Dxf,
+            Self::Valentina => FileKind::ValentinaPattern,
+            Self::Seamly => FileKind::SeamlyPattern,
         }
     }
 
@@ -56,6 +62,8 @@ impl Format {
             Self::Native => ".toile.json",
             Self::GarmentCode => ".json",
             Self::DxfAama | Self::DxfAstm => ".dxf",
+            Self::Valentina => ".val",
+            Self::Seamly => ".sm2d",
         }
     }
 
@@ -64,7 +72,9 @@ impl Format {
         match self {
             // GarmentCode's and Toile's own files are both JSON.
             Self::Native => vec![self.ending(), ".json"],
-            Self::GarmentCode | Self::DxfAama | Self::DxfAstm => vec![self.ending()],
+            Self::GarmentCode | Self::DxfAama | Self::DxfAstm | Self::Valentina | Self::Seamly => {
+                vec![self.ending()]
+            }
         }
     }
 
@@ -85,7 +95,7 @@ impl Format {
     /// Whether it holds the shapes of a draft, not the document that they come from.
     pub fn holds_shapes(self) -> bool {
         match self {
-            Self::Native => false,
+            Self::Native | Self::Valentina | Self::Seamly => false,
             Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
         }
     }
@@ -93,7 +103,7 @@ impl Format {
     /// Whether one file holds the shapes of several sizes.
     pub fn holds_sizes(self) -> bool {
         match self {
-            Self::Native | Self::GarmentCode => false,
+            Self::Native | Self::GarmentCode | Self::Valentina | Self::Seamly => false,
             Self::DxfAama | Self::DxfAstm => true,
         }
     }
@@ -105,6 +115,8 @@ impl Format {
             Self::GarmentCode => "GarmentCode",
             Self::DxfAama => "DXF-AAMA",
             Self::DxfAstm => "DXF-ASTM",
+            Self::Valentina => "Valentina",
+            Self::Seamly => "Seamly2D",
         }
     }
 
@@ -112,6 +124,7 @@ impl Format {
     pub fn is_written(self) -> bool {
         match self {
             Self::Native | Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
+            Self::Valentina | Self::Seamly => false,
         }
     }
 
@@ -122,6 +135,8 @@ impl Format {
             Self::GarmentCode => "GarmentCode specifications (JSON)",
             Self::DxfAama => "DXF-AAMA",
             Self::DxfAstm => "DXF-ASTM",
+            Self::Valentina => "Valentina's .val",
+            Self::Seamly => "Seamly2D's .sm2d",
         });
         listed(each.collect())
     }

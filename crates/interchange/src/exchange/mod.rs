@@ -9,7 +9,7 @@
 //! - [`crate::exchange::format::Format`]: formats, their words and endings;
 //! - [`crate::exchange::content::Content`], [`crate::exchange::contents`]: what a document holds, and which format
 //!   has a place for it;
-//! - [`crate::native`], [`crate::garmentcode`]: readers and writers of the formats.
+//! - [`crate::native`], [`crate::garmentcode`], [`crate::dxf`], [`crate::valentina`]: readers and writers of the formats.
 
 mod content;
 mod contents;
@@ -29,6 +29,6 @@ pub use format::Format;
 pub use guess::Guess;
 pub use loss::Loss;
 pub use read_options::{Companion, ReadOptions};
-pub use reading::{Reading, read};
+pub use reading::{Reading, companion_names, read};
 pub use write_source::{SizedDraft, WriteSource, Writing, Written};
 pub use writing::write;

@@ -1,8 +1,9 @@
 //! Patterns read from bytes.
 
-use super::{Format, Guess, Loss, ReadOptions};
+use super::{Companion, Format, Guess, Loss, ReadOptions};
 use crate::dxf::read_dxf;
 use crate::native::{Fitting, PatternFile};
+use crate::valentina::{ValentinaReading, measurement_file, read_valentina};
 use crate::{ExpectedKind, FileKind, FormatError, read_document, read_garmentcode};
 use toile_pattern::Pattern;
 
@@ -45,12 +46,29 @@ impl Reading {
     }
 }
 
-/// Reads a pattern of any format that is known here.
+/// Names of the files that a pattern needs beside itself, with the folders that it names them in.
+pub fn companion_names(bytes: &[u8]) -> Vec<String> {
+    match FileKind::of(bytes).and_then(Format::of_kind) {
+        Some(Format::Valentina | Format::Seamly) => {
+            let named = text(bytes).ok().and_then(measurement_file);
+            named.into_iter().collect()
+        }
+        Some(Format::Native | Format::GarmentCode | Format::DxfAama | Format::DxfAstm) | None => {
+            Vec::new()
+        }
+    }
+}
+
+/// Reads a pattern of any format that is known here, with the files that belong to it.
 ///
 /// # Errors
 /// The bytes are of another kind, named with the command that takes it; or they are damaged: the fault, its
 /// place and a remedy.
-pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError> {
+pub fn read(
+    bytes: &[u8],
+    options: &ReadOptions,
+    companions: &[Companion],
+) -> Result<Reading, FormatError> {
     let format = match options.format {
         Some(format) => format,
         None => {
@@ -88,6 +106,20 @@ pub fn read(bytes: &[u8], options: &ReadOptions) -> Result<Reading, FormatError>
                 ..Reading::plain(reading.pattern, options.format.unwrap_or(reading.format))
             })
         }
+        Format::Valentina | Format::Seamly => {
+            let ValentinaReading {
+                pattern,
+                guesses,
+                losses,
+                notes,
+            } = read_valentina(text(bytes)?, companions)?;
+            Ok(Reading {
+                guesses,
+                losses,
+                notes,
+                ..Reading::plain(pattern, format)
+            })
+        }
         Format::GarmentCode => {
             let reading = read_garmentcode(text(bytes)?)?;
             Ok(Reading {
@@ -107,7 +139,7 @@ fn looks_like_garmentcode(bytes: &[u8]) -> bool {
 /// Refuses answers to questions that a format does not ask.
 fn refuse_unused(format: Format, options: &ReadOptions) -> Result<(), FormatError> {
     let unused = match format {
-        Format::Native | Format::GarmentCode => vec![
+        Format::Native | Format::GarmentCode | Format::Valentina | Format::Seamly => vec![
             ("--unit", options.unit.is_some()),
             ("--inside", options.allowance_inside.is_some()),
         ],

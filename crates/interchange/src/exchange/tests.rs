@@ -8,7 +8,7 @@ use toile_pattern::fields::Choice;
 #[test]
 fn a_format_is_known_by_its_content_and_by_its_name() {
     let native = write_pattern(&Pattern::blank("skirt")).unwrap();
-    let read_native = read(native.as_bytes(), &ReadOptions::default()).unwrap();
+    let read_native = read(native.as_bytes(), &ReadOptions::default(), &[]).unwrap();
     assert_eq!(read_native.format, Format::Native);
     assert_eq!(Format::of_name("a.Toile.json"), Some(Format::Native));
     assert_eq!(Format::of_name("a.json"), Some(Format::GarmentCode));
@@ -28,7 +28,7 @@ fn another_format_than_the_content_shows_may_be_asked_for() {
         format: Some(Format::GarmentCode),
         ..ReadOptions::default()
     };
-    let refused = read(native.as_bytes(), &asked).unwrap_err();
+    let refused = read(native.as_bytes(), &asked, &[]).unwrap_err();
     assert!(refused.what.contains("pattern"), "{refused}");
 }
 
@@ -39,7 +39,7 @@ fn an_answer_to_a_question_that_the_format_does_not_ask_is_refused() {
         allowance_inside: Some(0.01),
         ..ReadOptions::default()
     };
-    let refused = read(native.as_bytes(), &asked).unwrap_err();
+    let refused = read(native.as_bytes(), &asked, &[]).unwrap_err();
     assert!(refused.what.contains("--inside"), "{refused}");
 }
 
@@ -48,6 +48,7 @@ fn text_that_is_not_utf_8_is_refused_with_its_line() {
     let refused = read(
         b"{\n\"toile\": 2, \"name\": \"\xe9\"}",
         &ReadOptions::default(),
+        &[],
     );
     assert_eq!(refused.unwrap_err().place, "line 2");
 }

@@ -40,6 +40,11 @@ pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, Format
             further.extend(fitting_lost(source.fitting));
             Ok(one(writing.text, further))
         }
+        Format::Valentina | Format::Seamly => Err(FormatError::new(
+            "the format",
+            format!("patterns of {} are read, not written", format.title()),
+            format!("patterns are written as {}", Format::written_words()),
+        )),
     }
 }
 

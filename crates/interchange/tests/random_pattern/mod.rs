@@ -295,7 +295,7 @@ fn rule(
         };
     }
     let curve = curves.get(dice.below(curves.len())).copied();
-    match (dice.below(11), curve) {
+    match (dice.below(13), curve) {
         (0, _) => PointRule::Offset {
             base: any(dice),
             x: dice.number(),
@@ -341,6 +341,17 @@ fn rule(
         (9, _) => PointRule::Foot {
             base: any(dice),
             line: [any(dice), any(dice)],
+        },
+        (10, _) => PointRule::OnLineAt {
+            line: [any(dice), any(dice)],
+            centre: any(dice),
+            distance: dice.number(),
+            far: dice.chance(50),
+        },
+        (11, _) => PointRule::TwoDistances {
+            centres: [any(dice), any(dice)],
+            distances: [dice.number(), dice.number()],
+            left: dice.chance(50),
         },
         _ => PointRule::Mirrored {
             base: any(dice),

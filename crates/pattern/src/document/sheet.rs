@@ -167,6 +167,26 @@ pub enum PointRule {
         /// The mirror line.
         line: [PointId; 2],
     },
+    /// A point on the line through two points, at a distance from a third point.
+    OnLineAt {
+        /// The line.
+        line: [PointId; 2],
+        /// The third point, centre of the circle that meets the line.
+        centre: PointId,
+        /// Distance from the third point (m).
+        distance: Number,
+        /// Whether it is the farther of both such points, in the direction of the line.
+        far: bool,
+    },
+    /// A point at given distances from two other points.
+    TwoDistances {
+        /// The other points, centres of circles that meet.
+        centres: [PointId; 2],
+        /// Distances from them (m).
+        distances: [Number; 2],
+        /// Whether it lies to the left of the way from the first of them to the second.
+        left: bool,
+    },
     /// A place on a line of the panel stage that the sheet lies on.
     Mark {
         /// The line of the panel.
@@ -275,6 +295,26 @@ fields!(
                     v.id("to", to);
                 });
             }
+            Self::OnLineAt { line: [from, to], centre, distance, far } => {
+                v.list(group("on_line"), &mut |v| {
+                    v.id("from", from);
+                    v.id("to", to);
+                });
+                v.id("centre", centre);
+                v.number(length("distance"), distance);
+                v.value(key("far").left_out_if(!*far), far);
+            }
+            Self::TwoDistances { centres: [a, b], distances: [first, second], left } => {
+                v.list(group("centres"), &mut |v| {
+                    v.id("first", a);
+                    v.id("second", b);
+                });
+                v.list(group("distances"), &mut |v| {
+                    v.number(length("first"), first);
+                    v.number(length("second"), second);
+                });
+                v.value(key("left").left_out_if(!*left), left);
+            }
             Self::Mark { line, at } => {
                 v.part(group("line"), line);
                 v.mark(group("mark").share_label("part of the way"), at);
@@ -313,6 +353,8 @@ fields!(
         PointRule::Crossing { .. } => &["crossing"],
         PointRule::Foot { .. } => &["foot"],
         PointRule::Mirrored { .. } => &["mirror"],
+        PointRule::OnLineAt { .. } => &["on_line"],
+        PointRule::TwoDistances { .. } => &["centres"],
         PointRule::Mark { .. } => &["mark"],
         PointRule::Offset { .. } => &["from", "offset"],
         PointRule::Polar { .. } => &["from", "angle"],
@@ -322,7 +364,7 @@ fields!(
     clash: Clash {
         none: Some([
             "the point has no place".into(),
-            "give it at, from, curve, curves, crossing, foot, mirror or mark".into(),
+            "give it at, from, curve, curves, crossing, foot, mirror, on_line, centres or mark".into(),
         ]),
         ..Clash::default()
     },

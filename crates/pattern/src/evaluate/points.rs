@@ -137,7 +137,59 @@ fn construct(c: &mut Computation<'_>, rule: &PointRule) -> Result<Vec2, Failure>
             let offset = c.point_at(*base)? - start;
             Ok(start + unit * (2.0 * offset.dot(&unit)) - offset)
         }
+        PointRule::OnLineAt {
+            line,
+            centre,
+            distance,
+            far,
+        } => {
+            let (start, way) = c.line(*line)?;
+            let unit = way.try_normalize(1e-12).ok_or_else(same_place)?;
+            let to_centre = c.point_at(*centre)? - start;
+            let distance = c.measure(distance, Want::Length)?;
+            let half = leg(distance, unit.perp(&to_centre)).ok_or_else(too_short)?;
+            let half = if *far { half } else { -half };
+            Ok(start + unit * (unit.dot(&to_centre) + half))
+        }
+        PointRule::TwoDistances {
+            centres,
+            distances: [first, second],
+            left,
+        } => {
+            let (start, way) = c.line(*centres)?;
+            let unit = way.try_normalize(1e-12).ok_or_else(same_place)?;
+            let first = c.measure(first, Want::Length)?;
+            let second = c.measure(second, Want::Length)?;
+            let between = way.norm();
+            let along = (between * between + first * first - second * second) / (2.0 * between);
+            let aside = leg(first, along).ok_or_else(apart)?;
+            let aside = if *left { aside } else { -aside };
+            Ok(start + unit * along + Vec2::new(-unit.y, unit.x) * aside)
+        }
     }
+}
+
+/// The second leg of a right triangle (m). `None`: its hypotenuse is shorter than its first leg.
+fn leg(hypotenuse: f64, first: f64) -> Option<f64> {
+    let square = (hypotenuse - first) * (hypotenuse + first);
+    // Where circle and line touch, rounding may leave a square just below zero.
+    (square >= -1e-12 * hypotenuse * hypotenuse).then(|| square.max(0.0).sqrt())
+}
+
+fn too_short() -> Failure {
+    Failure::new(
+        Code::Formula,
+        "the line is farther away than the distance",
+        "make the distance longer",
+    )
+}
+
+fn apart() -> Failure {
+    Failure::new(
+        Code::Formula,
+        "no point has both distances",
+        "choose distances whose circles meet",
+    )
 }
 
 fn on_path(path: &Path, along: f64) -> Result<Vec2, Failure> {

@@ -143,6 +143,37 @@ pub(super) fn moved(
                 "move the points it is made from",
             ));
         }
+        PointRule::OnLineAt {
+            line,
+            centre,
+            distance,
+            ..
+        } => {
+            let unit = direction(evaluation, *line)?.normalize();
+            let centre_at = at(evaluation, *centre)?;
+            let goal = now + unit * shift.dot(&unit);
+            let longer = (goal - centre_at).norm() - (now - centre_at).norm();
+            PointRule::OnLineAt {
+                line: *line,
+                centre: *centre,
+                distance: added(distance, longer),
+                far: (goal - centre_at).dot(&unit) > 0.0,
+            }
+        }
+        PointRule::TwoDistances {
+            centres,
+            distances: [first, second],
+            ..
+        } => {
+            let way = direction(evaluation, *centres)?;
+            let [a, b] = [at(evaluation, centres[0])?, at(evaluation, centres[1])?];
+            let longer = |centre: Vec2| (to - centre).norm() - (now - centre).norm();
+            PointRule::TwoDistances {
+                centres: *centres,
+                distances: [added(first, longer(a)), added(second, longer(b))],
+                left: way.perp(&(to - a)) > 0.0,
+            }
+        }
         PointRule::Mark { line, at } => PointRule::Mark {
             line: *line,
             at: moved_mark(evaluation, (sheet, *line, at), [now, to])?,

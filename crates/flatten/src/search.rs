@@ -1,0 +1,237 @@
+//! The next dart: from evenly spaced places of the outline towards the peak of energy and the deepest place inside, each
+//! tried by a short descent, the one of least energy taken.
+
+use crate::dart::{Opened, open, shortest_ways, way_to};
+use crate::{Dart, FlattenError, Grain, Options, Region, RestEnergy, minimise};
+use toile_geometry::{Vec2, Vec3, closest_on_segment};
+
+/// Places of the outline that are tried.
+const MOUTHS: usize = 20;
+
+/// Shares of the way to the target at which the apex is tried (1).
+const DEPTHS: [f64; 4] = [0.45, 0.6, 0.75, 0.9];
+
+/// Index in [`DEPTHS`] with which mouths are compared.
+const FIRST_DEPTH: usize = 2;
+
+/// Steps of a short descent.
+const SHORT_STEPS: usize = 8;
+
+/// Least distance of a mouth from corners of the outline and from other mouths, as a share of the outline's length (1).
+const APART: f64 = 0.04;
+
+/// Turn of the outline that makes a corner (rad).
+const CORNER: f64 = 0.5;
+
+/// Least decrease of the energy for which a dart is cut, as a share of it (1).
+const MIN_GAIN: f64 = 0.02;
+
+/// Largest distance of a cut from the straight line between its ends on the panel, as a share of its length: the legs of
+/// a dart are sewn straight (1).
+const MAX_BOW: f64 = 0.12;
+
+/// A surface with its flat shape and darts.
+pub struct State {
+    pub region: Region,
+    pub places: Vec<Vec2>,
+    pub darts: Vec<Dart>,
+}
+
+impl State {
+    /// The state with one more dart; the flat shape is the same, closed.
+    pub fn opened(&self, path: &[u32]) -> Result<Self, FlattenError> {
+        let Opened {
+            region,
+            left,
+            right,
+        } = open(&self.region, path, self.darts.len())?;
+        let mut places = self.places.clone();
+        places.extend(
+            path[..path.len() - 1]
+                .iter()
+                .map(|&v| self.places[v as usize]),
+        );
+        let mut darts = self.darts.clone();
+        darts.push(Dart { left, right });
+        Ok(Self {
+            region,
+            places,
+            darts,
+        })
+    }
+}
+
+/// The state with the dart that lowers the energy most, not yet at rest; none where none is worth it.
+///
+/// # Errors
+/// The triangles are too thin.
+pub fn next_dart(
+    state: &State,
+    options: &Options,
+    energy: f64,
+) -> Result<Option<State>, FlattenError> {
+    let mesh = state.region.mesh();
+    let mut barred = vec![false; mesh.positions.len()];
+    for &v in state.region.outline() {
+        barred[v as usize] = true;
+    }
+    let mut best: Option<(f64, State, Vec<u32>)> = None;
+    let try_path = |path: &[u32], best: &mut Option<(f64, State, Vec<u32>)>, way: &[u32]| {
+        let mut trial = state.opened(path)?;
+        let grain = Grain::new(&trial.region, options.grain)?;
+        let law = RestEnergy::new(&trial.region, options.law);
+        let found = minimise(&law, &grain, &mut trial.places, SHORT_STEPS)?;
+        if best.as_ref().is_none_or(|b| found.energy < b.0) {
+            *best = Some((found.energy, trial, way.to_vec()));
+        }
+        Ok::<(), FlattenError>(())
+    };
+    for target in targets(state, options, &barred) {
+        let (_, before) = ways_inside(mesh, target, &barred);
+        for mouth in mouths(state) {
+            let mut way = way_to(&before, mouth);
+            way.reverse();
+            let path = cut_short(&mesh.positions, &way, DEPTHS[FIRST_DEPTH]);
+            if let Some(path) = path.filter(|path| is_straight(&state.places, path)) {
+                try_path(path, &mut best, &way)?;
+            }
+        }
+    }
+    let Some((_, _, way)) = best.as_ref() else {
+        return Ok(None);
+    };
+    let way = way.clone();
+    for (k, depth) in DEPTHS.into_iter().enumerate() {
+        if let Some(path) = cut_short(&mesh.positions, &way, depth).filter(|_| k != FIRST_DEPTH) {
+            try_path(path, &mut best, &way)?;
+        }
+    }
+    Ok(best
+        .filter(|b| b.0 < (1.0 - MIN_GAIN) * energy)
+        .map(|b| b.1))
+}
+
+/// The vertex inside with the most energy about it, and the one deepest inside.
+fn targets(state: &State, options: &Options, barred: &[bool]) -> Vec<u32> {
+    let mesh = state.region.mesh();
+    let densities = RestEnergy::new(&state.region, options.law).densities(&state.places);
+    let mut about = vec![(0.0, 0u32); mesh.positions.len()];
+    for (triangle, density) in mesh.triangles.iter().zip(densities) {
+        for &v in triangle {
+            about[v as usize].0 += density;
+            about[v as usize].1 += 1;
+        }
+    }
+    let (depths, _) = shortest_ways(
+        mesh,
+        state.region.outline(),
+        &vec![false; mesh.positions.len()],
+    );
+    let mean = |v: u32| about[v as usize].0 / f64::from(about[v as usize].1.max(1));
+    let inside = || (0..mesh.positions.len() as u32).filter(|&v| !barred[v as usize]);
+    let deepest = inside().max_by(|&a, &b| depths[a as usize].total_cmp(&depths[b as usize]));
+    let Some(deepest) = deepest else {
+        return Vec::new();
+    };
+    // A dart to a peak beside the outline would be a notch.
+    let far = 0.4 * depths[deepest as usize];
+    let peak = inside()
+        .filter(|&v| depths[v as usize] >= far)
+        .max_by(|&a, &b| mean(a).total_cmp(&mean(b)));
+    let mut targets = vec![deepest];
+    targets.extend(peak.filter(|&peak| peak != deepest));
+    targets
+}
+
+/// Shortest ways from a target through the inside; vertices of the outline are reached and not passed.
+fn ways_inside(
+    mesh: &toile_geometry::TriangleMesh,
+    target: u32,
+    barred: &[bool],
+) -> (Vec<f64>, Vec<Option<u32>>) {
+    let (mut lengths, mut before) = shortest_ways(mesh, &[target], barred);
+    let distance = |a: u32, b: u32| {
+        let way: Vec3 = mesh.positions[a as usize] - mesh.positions[b as usize];
+        way.norm()
+    };
+    for &[a, b] in &mesh.topology().edges {
+        for (inside, mouth) in [(a, b), (b, a)] {
+            let way = lengths[inside as usize] + distance(a, b);
+            if barred[mouth as usize] && !barred[inside as usize] && way < lengths[mouth as usize] {
+                lengths[mouth as usize] = way;
+                before[mouth as usize] = Some(inside);
+            }
+        }
+    }
+    (lengths, before)
+}
+
+/// Places of the outline for a mouth: evenly spaced, away from corners, darts and their mouths.
+fn mouths(state: &State) -> Vec<u32> {
+    let outline = state.region.outline();
+    let place = |k: usize| state.places[outline[k % outline.len()] as usize];
+    let mut along = vec![0.0];
+    for k in 0..outline.len() {
+        along.push(along[k] + (place(k + 1) - place(k)).norm());
+    }
+    let whole = along[outline.len()];
+    let in_dart = |v: u32| {
+        let mut darts = state.darts.iter();
+        darts.any(|d| d.left.contains(&v) || d.right.contains(&v))
+    };
+    let is_taken = |k: usize| {
+        let (before, after) = (
+            place(k) - place(k + outline.len() - 1),
+            place(k + 1) - place(k),
+        );
+        before.angle(&after) > CORNER || in_dart(outline[k])
+    };
+    let taken: Vec<f64> = (0..outline.len())
+        .filter(|&k| is_taken(k))
+        .map(|k| along[k])
+        .collect();
+    let free = |at: f64| {
+        taken.iter().all(|&other| {
+            let apart = (at - other).abs();
+            apart.min(whole - apart) > APART * whole
+        })
+    };
+    let mut mouths = Vec::new();
+    for step in 0..MOUTHS {
+        let wanted = whole * (step as f64 + 0.5) / MOUTHS as f64;
+        let k = along.partition_point(|&at| at < wanted);
+        if k < outline.len() && free(along[k]) && !mouths.contains(&outline[k]) {
+            mouths.push(outline[k]);
+        }
+    }
+    mouths
+}
+
+/// Whether a path is near the straight line between its ends on the panel.
+fn is_straight(places: &[Vec2], path: &[u32]) -> bool {
+    let (Some(&first), Some(&last)) = (path.first(), path.last()) else {
+        return false;
+    };
+    let line = [places[first as usize], places[last as usize]];
+    let most = MAX_BOW * (line[1] - line[0]).norm();
+    path.iter().all(|&v| {
+        let place = places[v as usize];
+        (place - closest_on_segment(place, line)).norm() <= most
+    })
+}
+
+/// The first part of a way, as near to a share of its length as its vertices allow.
+fn cut_short<'a>(positions: &[Vec3], way: &'a [u32], share: f64) -> Option<&'a [u32]> {
+    let mut along = vec![0.0];
+    for pair in way.windows(2) {
+        let side: Vec3 = positions[pair[1] as usize] - positions[pair[0] as usize];
+        along.push(along[along.len() - 1] + side.norm());
+    }
+    let wanted = share * along[along.len() - 1];
+    let nearest = (1..way.len()).min_by(|&a, &b| {
+        (along[a] - wanted)
+            .abs()
+            .total_cmp(&(along[b] - wanted).abs())
+    })?;
+    Some(&way[..=nearest])
+}

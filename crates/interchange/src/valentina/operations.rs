@@ -1,0 +1,286 @@
+//! Operations of a file: points and curves turned, moved and mirrored, each with a name of its own.
+
+use super::build::{Build, Slot, plain, reference};
+use super::curves::moved;
+use super::kinds::{LENGTH, Quantity};
+use super::points::{direction, unit};
+use super::things::{CurveThing, PointThing, Thing};
+use roxmltree::Node;
+use std::collections::HashMap;
+use std::sync::Arc;
+use toile_geometry::{Curve as Piece, Path, Vec2};
+use toile_pattern::{CurveId, CurveRule, PointId, PointRule};
+
+/// Distance of the second point of a mirror line from the first (m).
+const AXIS: f64 = 0.1;
+
+/// A motion of points and curves.
+enum Motion {
+    /// Turned round a point.
+    Turned { centre: PointThing, angle: Slot },
+    /// Moved in a direction.
+    Moved { angle: Slot, distance: Slot },
+    /// Mirrored in a line.
+    Mirrored { line: [PointThing; 2] },
+}
+
+/// A motion, its suffix for names, and what it has moved so far.
+struct Moving {
+    motion: Motion,
+    suffix: String,
+    points: HashMap<PointId, PointThing>,
+    curves: HashMap<CurveId, Arc<CurveThing>>,
+}
+
+/// Does an operation. `None`: the tool is none of these.
+pub(super) fn operation(
+    build: &mut Build,
+    node: Node<'_, '_>,
+    tool: &str,
+) -> Option<Result<(), String>> {
+    let motion = match tool {
+        "rotation" => turned(build, node),
+        "moving" => shifted(build, node),
+        "flippingByLine" => by_line(build, node),
+        "flippingByAxis" => by_axis(build, node),
+        _ => return None,
+    };
+    Some(motion.and_then(|motion| carry_out(build, node, motion)))
+}
+
+fn turned(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
+    Ok(Motion::Turned {
+        centre: build.point(node, "center")?,
+        angle: build.number(node, "angle", Quantity::Angle)?,
+    })
+}
+
+fn shifted(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
+    let turn = plain(build, node, "rotationAngle").unwrap_or_default();
+    if turn % 360.0 != 0.0 {
+        return Err("it moves and turns at once".to_owned());
+    }
+    Ok(Motion::Moved {
+        angle: build.number(node, "angle", Quantity::Angle)?,
+        distance: build.number(node, "length", LENGTH)?,
+    })
+}
+
+fn by_line(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
+    let line = [build.point(node, "p1Line")?, build.point(node, "p2Line")?];
+    unit(line[1].at - line[0].at)?;
+    Ok(Motion::Mirrored { line })
+}
+
+fn by_axis(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
+    let centre = build.point(node, "center")?;
+    let way = match node.attribute("axisType") {
+        Some("1") => Vec2::new(0.0, AXIS),
+        Some("2") => Vec2::new(AXIS, 0.0),
+        other => return Err(format!("its axisType is {other:?}, neither 1 nor 2")),
+    };
+    let rule = PointRule::Offset {
+        base: centre.id,
+        x: way.x.into(),
+        y: way.y.into(),
+    };
+    let name = format!("{} axis", build.point_name(centre));
+    let tip = build.add_point(&name, rule, centre.at + way);
+    Ok(Motion::Mirrored {
+        line: [centre, tip],
+    })
+}
+
+/// The items of a list of an operation, each with its number.
+fn items<'a, 'i>(node: Node<'a, 'i>, list: &str) -> Vec<Node<'a, 'i>> {
+    let lists = node.children().filter(|child| child.has_tag_name(list));
+    let all = lists.flat_map(|list| list.children());
+    all.filter(|item| item.has_tag_name("item")).collect()
+}
+
+fn carry_out(build: &mut Build, node: Node<'_, '_>, motion: Motion) -> Result<(), String> {
+    let mut moving = Moving {
+        motion,
+        suffix: node.attribute("suffix").unwrap_or_default().to_owned(),
+        points: HashMap::new(),
+        curves: HashMap::new(),
+    };
+    let sources = items(node, "source");
+    let destinations = items(node, "destination");
+    if sources.len() != destinations.len() {
+        return Err("its lists of sources and results differ in length".to_owned());
+    }
+    let mut faults = Vec::new();
+    for (from, to) in sources.into_iter().zip(destinations) {
+        if let Err(why) = carry(build, &mut moving, from, to) {
+            faults.push(why);
+        }
+    }
+    match faults.first() {
+        None => Ok(()),
+        Some(first) => Err(format!("{} of its parts: {first}", faults.len())),
+    }
+}
+
+fn carry(
+    build: &mut Build,
+    moving: &mut Moving,
+    from: Node<'_, '_>,
+    to: Node<'_, '_>,
+) -> Result<(), String> {
+    let (from, to) = (reference(from, "idObject")?, reference(to, "idObject")?);
+    let thing = build.things.get(&from).cloned();
+    let thing = thing.ok_or_else(|| format!("part {from} is not there or was left out"))?;
+    let made = match thing {
+        Thing::Point(point) => {
+            let point = build.on_this_sheet(point);
+            let made = moving.point(build, point)?;
+            let name = format!("{}{}", build.file_name(point), moving.suffix);
+            build.named.insert(name, made);
+            Thing::Point(made)
+        }
+        Thing::Curve(curve) => Thing::Curve(moving.curve(build, &curve)?),
+    };
+    build.things.insert(to, made);
+    Ok(())
+}
+
+impl Moving {
+    /// The image of a place for the base size (m).
+    fn place(&self, at: Vec2) -> Vec2 {
+        match &self.motion {
+            Motion::Turned { centre, angle } => {
+                let (sin, cos) = angle.value.sin_cos();
+                let way = at - centre.at;
+                centre.at + Vec2::new(way.x * cos - way.y * sin, way.x * sin + way.y * cos)
+            }
+            Motion::Moved { angle, distance } => at + direction(angle.value) * distance.value,
+            Motion::Mirrored { line } => {
+                let way = (line[1].at - line[0].at).normalize();
+                let offset = at - line[0].at;
+                line[0].at + way * (2.0 * offset.dot(&way)) - offset
+            }
+        }
+    }
+
+    fn rule(&self, build: &Build, point: PointThing) -> Result<PointRule, String> {
+        Ok(match &self.motion {
+            Motion::Turned { centre, .. } if (point.at - centre.at).norm() <= 1e-9 => {
+                PointRule::Offset {
+                    base: point.id,
+                    x: 0.0.into(),
+                    y: 0.0.into(),
+                }
+            }
+            Motion::Turned { centre, angle } => {
+                let (o, p) = (centre.id.0, point.id.0);
+                PointRule::Polar {
+                    base: centre.id,
+                    angle: build.formula(&format!("angle(?{o}, ?{p}) + {}", angle.text))?,
+                    distance: build.formula(&format!("distance(?{o}, ?{p})"))?,
+                }
+            }
+            Motion::Moved { angle, distance } => PointRule::Polar {
+                base: point.id,
+                angle: angle.number.clone(),
+                distance: distance.number.clone(),
+            },
+            Motion::Mirrored { line } => PointRule::Mirrored {
+                base: point.id,
+                line: line.map(|end| end.id),
+            },
+        })
+    }
+
+    fn point(&mut self, build: &mut Build, point: PointThing) -> Result<PointThing, String> {
+        if let Some(known) = self.points.get(&point.id) {
+            return Ok(*known);
+        }
+        let rule = self.rule(build, point)?;
+        let name = format!("{}{}", build.file_name(point), self.suffix);
+        let made = build.add_point(&name, rule, self.place(point.at));
+        build.file_names.insert(made.id, name);
+        self.points.insert(point.id, made);
+        Ok(made)
+    }
+
+    fn piece(&self, piece: Piece) -> Piece {
+        match &self.motion {
+            Motion::Turned { centre, angle } => piece
+                .translated(-centre.at)
+                .rotated(angle.value)
+                .translated(centre.at),
+            Motion::Moved { angle, distance } => {
+                piece.translated(direction(angle.value) * distance.value)
+            }
+            Motion::Mirrored { line } => piece.reflected(line[0].at, line[1].at - line[0].at),
+        }
+    }
+
+    /// The image of a whole curve of the document.
+    fn whole(&mut self, build: &mut Build, of: &CurveThing) -> Result<Arc<CurveThing>, String> {
+        if let Some(known) = self.curves.get(&of.id) {
+            return Ok(known.clone());
+        }
+        if of.sheet != build.current() {
+            return Err(format!("{} belongs to another drawing", of.name));
+        }
+        let whole = build.wholes.get(&of.id).cloned();
+        let whole = whole.ok_or("its curve is not there")?;
+        let ends = [
+            self.point(build, whole.ends[0])?,
+            self.point(build, whole.ends[1])?,
+        ];
+        let rule = match &self.motion {
+            Motion::Mirrored { line } => CurveRule::Mirrored {
+                of: of.id,
+                line: line.map(|end| end.id),
+            },
+            Motion::Turned { .. } | Motion::Moved { .. } => {
+                if (ends[1].at - ends[0].at).norm() <= 1e-9 {
+                    return Err(format!("{} begins where it ends", of.name));
+                }
+                CurveRule::Copy { of: of.id }
+            }
+        };
+        let pieces = moved(&whole, |piece| self.piece(piece));
+        let name = self.name_of(build, &whole, ends);
+        let made = build.add_curve(&name, ends, rule, pieces);
+        self.curves.insert(of.id, made.clone());
+        Ok(made)
+    }
+
+    fn name_of(&self, build: &Build, curve: &CurveThing, ends: [PointThing; 2]) -> String {
+        let kind = curve.name.split('_').next().unwrap_or("Spl");
+        match kind {
+            "Arc" => format!("{}{}", curve.name, self.suffix),
+            kind => {
+                let [a, b] = ends.map(|end| build.file_name(end));
+                format!("{kind}_{a}_{b}")
+            }
+        }
+    }
+
+    fn curve(&mut self, build: &mut Build, curve: &CurveThing) -> Result<Arc<CurveThing>, String> {
+        let whole = self.whole(build, curve)?;
+        let made = match curve.is_whole {
+            true => whole,
+            false => {
+                let ends = [
+                    self.point(build, curve.ends[0])?,
+                    self.point(build, curve.ends[1])?,
+                ];
+                Arc::new(CurveThing {
+                    id: whole.id,
+                    name: self.name_of(build, curve, ends),
+                    path: Path::new(moved(curve, |piece| self.piece(piece))),
+                    ends,
+                    ..curve.clone()
+                })
+            }
+        };
+        let (name, text) = (made.name.clone(), made.length.clone());
+        build.name_length(name, &text, made.path.length());
+        Ok(made)
+    }
+}

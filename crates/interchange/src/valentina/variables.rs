@@ -1,0 +1,407 @@
+//! Measurements and increments of a file: names that its formulas use.
+
+use super::build::{Build, part_name};
+use super::expression::Expression;
+use super::kinds::{LENGTH, PLAIN, Quantity, Symbol};
+use super::quantities::{constant, demand, quantity_of};
+use super::translate::{translated, value};
+use crate::FormatError;
+use crate::exchange::Companion;
+use crate::exchange::Guess;
+use crate::measurements_seamly::{SeamlyRows, SizeChoice, seamly_rows};
+use crate::xml::Xml;
+use roxmltree::Node;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use toile_measure::{
+    Build as Figure, Measurements, Origin, SEAMLY, definition, is_angle, translated as own_name,
+};
+use toile_pattern::{Number, Size, SizeId, Variable, VariableId};
+
+/// A length that is unknown although formulas name it (m).
+const UNKNOWN_LENGTH: f64 = 0.1;
+/// Rounds in which quantities of increments are found from their uses.
+const MAX_ROUNDS: usize = 10;
+/// Attributes of tools that are formulas, and what they are wanted as.
+const FORMULAS: &[(&str, Quantity)] = &[
+    ("length", LENGTH),
+    ("length1", LENGTH),
+    ("length2", LENGTH),
+    ("radius", LENGTH),
+    ("radius1", LENGTH),
+    ("radius2", LENGTH),
+    ("arcRadius", LENGTH),
+    ("c1Radius", LENGTH),
+    ("c2Radius", LENGTH),
+    ("cRadius", LENGTH),
+    ("width", LENGTH),
+    ("before", LENGTH),
+    ("after", LENGTH),
+    ("angle", Quantity::Angle),
+    ("angle1", Quantity::Angle),
+    ("angle2", Quantity::Angle),
+    ("rotationAngle", Quantity::Angle),
+];
+
+/// The names of all measurement files that a pattern names.
+pub(super) fn measurement_file(xml: &Xml<'_>) -> Option<String> {
+    let node = xml
+        .elements()
+        .find(|node| node.tag_name().name() == "measurements")?;
+    let path = node.text()?.trim();
+    (!path.is_empty()).then(|| path.to_owned())
+}
+
+/// An increment of the file.
+struct Increment {
+    name: String,
+    line: usize,
+    formula: Result<Expression, String>,
+}
+
+/// Reads measurements and increments, so that formulas of the drawing may name them.
+///
+/// # Errors
+/// The file of measurements is damaged: its fault.
+pub(super) fn read(
+    build: &mut Build,
+    xml: &Xml<'_>,
+    companions: &[Companion],
+) -> Result<(), FormatError> {
+    let increments = increments(xml);
+    let named: BTreeSet<&str> = increments.iter().map(|one| one.name.as_str()).collect();
+    let formulas = formulas_of(xml);
+    let mut words: BTreeSet<String> = BTreeSet::new();
+    let all = formulas.iter().map(|(formula, _)| formula);
+    let all = all.chain(
+        increments
+            .iter()
+            .filter_map(|one| one.formula.as_ref().ok()),
+    );
+    for formula in all {
+        formula.each_name(&mut |name| {
+            build.used.insert(name.to_owned());
+            let is_drawn = super::build::quantity_by_name(name).is_some();
+            if !is_drawn && constant(name).is_none() && !named.contains(name) {
+                words.insert(name.to_owned());
+            }
+        });
+    }
+    measurements(build, xml, companions, &words)?;
+    find_quantities(build, &increments, &formulas);
+    let mut taken: BTreeSet<String> = build
+        .pattern
+        .variables
+        .iter()
+        .map(|variable| variable.name.clone())
+        .collect();
+    for increment in increments {
+        let place = format!("line {}", increment.line);
+        let name = increment.name.clone();
+        let told = format!("increment {name:?}");
+        if let Err(why) = add_increment(build, increment, &mut taken) {
+            build.left_out(place, told, why);
+        }
+    }
+    Ok(())
+}
+
+fn increments(xml: &Xml<'_>) -> Vec<Increment> {
+    let all = xml.elements().filter(|node| {
+        let tag = node.tag_name().name();
+        (tag == "increment" || tag == "variable") && node.has_attribute("name")
+    });
+    let read = |node: Node<'_, '_>| {
+        let name = node.attribute("name").unwrap_or_default().to_owned();
+        let text = node.attribute("formula").or(node.attribute("base"));
+        // A separator of the table has a name and no formula.
+        let text = text.filter(|text| !text.trim().is_empty())?;
+        Some(Increment {
+            name,
+            line: xml.line(node),
+            formula: Expression::read(text),
+        })
+    };
+    all.filter_map(read).collect()
+}
+
+/// All formulas of tools and pieces, with what they are wanted as.
+fn formulas_of(xml: &Xml<'_>) -> Vec<(Expression, Quantity)> {
+    let mut found = Vec::new();
+    for node in xml.elements() {
+        for (attribute, want) in FORMULAS {
+            let Some(text) = node.attribute(*attribute) else {
+                continue;
+            };
+            if text.trim().parse::<f64>().is_ok() {
+                continue;
+            }
+            if let Ok(formula) = Expression::read(text) {
+                found.push((formula, *want));
+            }
+        }
+    }
+    found
+}
+
+/// Finds whether increments that are numbers alone are lengths, angles or factors, from their uses.
+fn find_quantities(
+    build: &mut Build,
+    increments: &[Increment],
+    formulas: &[(Expression, Quantity)],
+) {
+    let names: BTreeSet<&str> = increments.iter().map(|one| one.name.as_str()).collect();
+    for _ in 0..MAX_ROUNDS {
+        let mut found: BTreeMap<String, Quantity> = BTreeMap::new();
+        for increment in increments {
+            let Ok(formula) = &increment.formula else {
+                continue;
+            };
+            let known = build.quantities.get(&increment.name).copied();
+            let own = quantity_of(formula, build);
+            if let (None, Some(own)) = (known, own) {
+                found.entry(increment.name.clone()).or_insert(own);
+            }
+            let want = known.or(own).unwrap_or(PLAIN);
+            demand(formula, want, build, &mut |name, quantity| {
+                if names.contains(name) {
+                    found.entry(name.to_owned()).or_insert(quantity);
+                }
+            });
+        }
+        for (formula, want) in formulas {
+            demand(formula, *want, build, &mut |name, quantity| {
+                if names.contains(name) {
+                    found.entry(name.to_owned()).or_insert(quantity);
+                }
+            });
+        }
+        found.retain(|name, _| !build.quantities.contains_key(name));
+        if found.is_empty() {
+            break;
+        }
+        build.quantities.extend(found);
+    }
+    for name in names {
+        let known = build.quantities.entry(name.to_owned());
+        known.or_insert(PLAIN);
+    }
+}
+
+fn add_increment(
+    build: &mut Build,
+    increment: Increment,
+    taken: &mut BTreeSet<String>,
+) -> Result<(), String> {
+    let formula = increment.formula?;
+    let quantity = build.quantities.get(&increment.name).copied();
+    let quantity = quantity.unwrap_or(PLAIN);
+    let number = value(&formula, build)?;
+    if !number.is_finite() {
+        return Err("its value is no number".to_owned());
+    }
+    let text = translated(&formula, quantity, build)?;
+    let mut has_names = false;
+    formula.each_name(&mut |_| has_names = true);
+    let number_of_document = match has_names || quantity != PLAIN {
+        true => build.formula(&text)?,
+        false => Number::Value(number),
+    };
+    let wanted = increment.name.trim_start_matches('#');
+    let id = add_variable(build, wanted, number_of_document, taken);
+    let symbol = Symbol {
+        text: format!("?{}", id.0),
+        quantity,
+        value: number,
+    };
+    build.symbols.insert(increment.name, symbol);
+    Ok(())
+}
+
+fn add_variable(
+    build: &mut Build,
+    name: &str,
+    number: Number,
+    taken: &mut BTreeSet<String>,
+) -> VariableId {
+    let id: VariableId = build.pattern.ids.take();
+    let name = part_name(name, taken);
+    build
+        .pattern
+        .variables
+        .push(Arc::new(Variable { id, name, number }));
+    id
+}
+
+/// Our name of a measurement of theirs.
+fn name_of(theirs: &str) -> String {
+    match own_name(SEAMLY, theirs) {
+        Some(own) => own.to_owned(),
+        None => theirs.trim_start_matches('@').to_ascii_lowercase(),
+    }
+}
+
+/// Gives each measurement that formulas name its value: from the file of measurements, predicted, or as a
+/// variable.
+fn measurements(
+    build: &mut Build,
+    xml: &Xml<'_>,
+    companions: &[Companion],
+    words: &BTreeSet<String>,
+) -> Result<(), FormatError> {
+    let wanted = measurement_file(xml);
+    let found = companions.first();
+    let rows = match found {
+        None => SeamlyRows::default(),
+        Some(companion) => rows_of(companion)?,
+    };
+    if words.is_empty() && rows.rows.is_empty() {
+        return Ok(());
+    }
+    let mut table = Measurements::new();
+    let mut given: BTreeMap<&str, f64> = BTreeMap::new();
+    for (theirs, number) in &rows.rows {
+        let own = name_of(theirs);
+        let quantity = quantity_of_measurement(&own);
+        let si = match quantity {
+            Quantity::Power(_) => number * rows.metres,
+            Quantity::Angle => number.to_radians(),
+        };
+        given.entry(theirs.as_str()).or_insert(si);
+        // Measurements that are not in the catalogue are lengths in a table.
+        let is_length = quantity == LENGTH || is_angle(&own);
+        let is_kept = *number != 0.0 && !table.contains(&own) && is_length;
+        if is_kept {
+            // A name with other letters than a table may have becomes a variable below.
+            let _ = table.set(&own, si, Origin::Asked);
+        }
+    }
+    let complete = table.completed(Figure::Either);
+    let mut taken = BTreeSet::new();
+    let (mut predicted, mut unknown) = (Vec::new(), Vec::new());
+    for theirs in words {
+        let own = name_of(theirs);
+        let quantity = quantity_of_measurement(&own);
+        let in_table = table.get(&own);
+        let measured = given.get(theirs.as_str()).copied();
+        let from_figure = complete.get(&own).filter(|_| measured.is_none());
+        let symbol = match (in_table, from_figure) {
+            (Some(value), _) => Some((value, Origin::Asked)),
+            (None, Some(value)) => Some((value, Origin::Predicted)),
+            (None, None) => None,
+        };
+        let symbol = match symbol {
+            Some((value, origin)) => {
+                if origin == Origin::Predicted {
+                    predicted.push(theirs.clone());
+                    let _ = table.set(&own, value, origin);
+                }
+                let own = definition(&own).map_or(own.as_str(), |known| known.name);
+                (own.to_owned(), value)
+            }
+            None => {
+                let value = measured.unwrap_or_else(|| {
+                    unknown.push(theirs.clone());
+                    match quantity {
+                        Quantity::Angle => 0.0,
+                        Quantity::Power(_) => UNKNOWN_LENGTH,
+                    }
+                });
+                let text = match quantity {
+                    Quantity::Angle => format!("{}deg", value.to_degrees()),
+                    Quantity::Power(_) => {
+                        format!("{}{}", build.unit.of_si(value, LENGTH), build.unit.word)
+                    }
+                };
+                let number = build.formula(&text).unwrap_or(Number::Value(value));
+                let name = theirs.trim_start_matches('@');
+                let id = add_variable(build, name, number, &mut taken);
+                (format!("?{}", id.0), value)
+            }
+        };
+        build.name_value(theirs.clone(), &symbol.0, quantity, symbol.1);
+    }
+    tell(build, (found, wanted), predicted, unknown);
+    if !table.is_empty() {
+        let name = found.map_or("base", |companion| stem(&companion.name));
+        let id: SizeId = build.pattern.ids.take();
+        build.pattern.base_size = Some(id);
+        build.pattern.sizes.push(Arc::new(Size {
+            id,
+            name: part_name(name, &mut BTreeSet::new()),
+            measurements: table,
+        }));
+    }
+    Ok(())
+}
+
+fn quantity_of_measurement(own: &str) -> Quantity {
+    match is_angle(own) || own.ends_with("_angle") {
+        true => Quantity::Angle,
+        false => LENGTH,
+    }
+}
+
+/// A file's name without folders and ending.
+fn stem(name: &str) -> &str {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    name.split('.').next().unwrap_or(name)
+}
+
+fn rows_of(companion: &Companion) -> Result<SeamlyRows, FormatError> {
+    let fault = |error: FormatError| FormatError {
+        place: format!("{}, {}", companion.name, error.place),
+        ..error
+    };
+    let text = std::str::from_utf8(&companion.bytes).map_err(|_| {
+        fault(FormatError::new(
+            "the whole file",
+            "the text is not UTF-8",
+            "save it as UTF-8",
+        ))
+    })?;
+    seamly_rows(text, SizeChoice::default()).map_err(fault)
+}
+
+/// Says which measurements were predicted, and which nothing is known of.
+fn tell(
+    build: &mut Build,
+    (found, wanted): (Option<&Companion>, Option<String>),
+    predicted: Vec<String>,
+    unknown: Vec<String>,
+) {
+    let because = match (found, wanted) {
+        (Some(companion), _) => format!("{} does not have them", companion.name),
+        (None, Some(wanted)) => format!("the file {wanted} is not here"),
+        (None, None) => "the pattern names no file of measurements".to_owned(),
+    };
+    if !predicted.is_empty() {
+        build.guesses.push(Guess {
+            what: "measurements",
+            chosen: format!("{} of an average adult", listed(&predicted)),
+            because: because.clone(),
+            option: "--with",
+        });
+    }
+    if !unknown.is_empty() {
+        build.guesses.push(Guess {
+            what: "unknown measurements",
+            chosen: format!("10 cm or 0 degrees for {}", listed(&unknown)),
+            because,
+            option: "--with",
+        });
+    }
+}
+
+/// The first few of some names.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 8;
+    match names.len() > SHOWN {
+        false => names.join(", "),
+        true => format!(
+            "{} and {} more",
+            names[..SHOWN].join(", "),
+            names.len() - SHOWN
+        ),
+    }
+}
