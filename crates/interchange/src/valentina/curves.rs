@@ -367,6 +367,7 @@ fn make_arc(
         Quantity::Angle,
         start.value,
     );
+    build.circles.insert(made.id, (centre, radius.clone()));
     let end = &sweep.end;
     build.name_value(
         format!("Angle2{name}"),

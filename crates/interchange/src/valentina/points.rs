@@ -4,6 +4,7 @@ use super::build::{Build, attribute_of};
 use super::cuts::parts;
 use super::kinds::{LENGTH, Quantity};
 use super::things::PointThing;
+use crate::exchange::Loss;
 use roxmltree::Node;
 use toile_geometry::{Curve as Piece, Path, Vec2};
 use toile_pattern::{Number, PointRule};
@@ -86,6 +87,18 @@ fn along_line(build: &mut Build, node: Node<'_, '_>) -> Made {
     let tip = build.point(node, "secondPoint")?;
     let read = |build: &mut Build| build.number(node, "length", LENGTH);
     let distance = with_current_length(build, [base, tip], read)?;
+    if (tip.at - base.at).norm() <= 1e-12 {
+        // Between points in one place there is no direction: the point lies there too.
+        let rule = PointRule::Offset {
+            base: base.id,
+            x: 0.0.into(),
+            y: 0.0.into(),
+        };
+        let why = "both points of its line are in one place in the base size";
+        let told = Loss::at(name(node), "a direction", why);
+        build.losses.push(told);
+        return Ok(build.add_point(name(node), rule, base.at));
+    }
     let way = unit(tip.at - base.at)?;
     let rule = PointRule::Toward {
         base: base.id,

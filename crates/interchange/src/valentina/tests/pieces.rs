@@ -33,7 +33,8 @@ fn a_piece_becomes_a_panel_with_all_that_it_says() {
         .flat_map(|path| path.curves())
         .map(|curve| curve.swept_area())
         .sum();
-    let quarter = std::f64::consts::PI * 0.1 * 0.1 / 4.0;
+    // Twice the area is swept.
+    let quarter = std::f64::consts::PI * 0.1 * 0.1 / 2.0;
     assert!((area - quarter).abs() < 1e-12, "{area}");
     assert_eq!(panel.allowance, Number::Value(0.015));
     let own: Vec<_> = outline
@@ -80,7 +81,7 @@ fn a_clockwise_outline_is_turned_and_a_curve_cut_to_its_neighbours() {
         .flat_map(|path| path.curves())
         .map(|curve| curve.swept_area())
         .sum();
-    let quarter = std::f64::consts::PI * 0.05 * 0.05 / 4.0;
+    let quarter = std::f64::consts::PI * 0.05 * 0.05 / 2.0;
     assert!((area - quarter).abs() < 1e-12, "{area}");
     assert_eq!(reading.pattern.panels[0].allowance, Number::ZERO);
     let curves = &reading.pattern.sheets[0].curves;
