@@ -5,58 +5,10 @@ use crate::dart::open;
 use crate::search::{State, next_dart};
 use crate::tutte::tutte;
 use crate::{
-    FlattenError, Grain, MAX_STEPS, Minimum, Region, RestEnergy, Stretch, arap, minimise,
-    stretch_of, stretch_quantile,
+    Dart, FlattenError, Grain, MAX_STEPS, Minimum, Options, Region, RestEnergy, SHARE_WITHIN,
+    Stretch, arap, minimise, stretch_of, stretch_quantile,
 };
-use toile_drape::laws::stretch::MembraneLaw;
-use toile_geometry::{TriangleMesh, Vec2, Vec3, ring_area};
-
-/// Share of the surface's area on which the stretch keeps its limit (1).
-pub const SHARE_WITHIN: f64 = 0.99;
-
-/// What is asked of a panel.
-#[derive(Clone, Debug)]
-pub struct Options {
-    /// Law of the fabric.
-    pub law: MembraneLaw,
-    /// Direction of the grain in space, along the surface as far as it can (1).
-    pub grain: Vec3,
-    /// Limit of the stretch on [`SHARE_WITHIN`] of the area, either way (1).
-    pub strain: f64,
-    /// Most darts that are added to the cuts.
-    pub darts: usize,
-    /// Cuts to be made first: vertices of the mesh along edges, from the outline to the apex.
-    pub cuts: Vec<Vec<u32>>,
-}
-
-/// A dart of a panel: its legs, from the mouth to the apex, as vertices of the opened surface.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Dart {
-    /// The leg on the left seen from the mouth.
-    pub left: Vec<u32>,
-    /// The leg on the right.
-    pub right: Vec<u32>,
-}
-
-impl Dart {
-    /// Whether its sides lie over one another on the panel, so that cloth has to be added there (a gusset) and none can be
-    /// taken away.
-    pub fn overlaps(&self, places: &[Vec2]) -> bool {
-        let ring: Vec<Vec2> = (self.left.iter().chain(self.right.iter().rev()))
-            .map(|&v| places[v as usize])
-            .collect();
-        // The opening lies clockwise between the legs.
-        ring_area(&ring) > 0.0
-    }
-
-    /// Distance of the ends of the legs at the mouth on the panel (m).
-    pub fn intake(&self, places: &[Vec2]) -> f64 {
-        match (self.left.first(), self.right.first()) {
-            (Some(&a), Some(&b)) => (places[a as usize] - places[b as usize]).norm(),
-            (None, _) | (_, None) => 0.0,
-        }
-    }
-}
+use toile_geometry::{TriangleMesh, Vec2};
 
 /// A panel.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use super::curves;
 use super::cuts;
 use super::operations;
 use super::points;
-use super::things::Thing;
+use super::things::{Made, Thing};
 use crate::xml::Xml;
 use roxmltree::Node;
 
@@ -65,7 +65,7 @@ fn line(build: &mut Build, node: Node<'_, '_>) -> Result<(), String> {
     Ok(())
 }
 
-fn keep_point(build: &mut Build, node: Node<'_, '_>, made: points::Made) -> Result<(), String> {
+fn keep_point(build: &mut Build, node: Node<'_, '_>, made: Made) -> Result<(), String> {
     let id = reference(node, "id")?;
     let made = made?;
     build.things.insert(id, Thing::Point(made));

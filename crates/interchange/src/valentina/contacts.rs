@@ -2,8 +2,8 @@
 
 use super::build::{Build, Slot, attribute_of, reference};
 use super::kinds::LENGTH;
-use super::points::{Made, unit};
-use super::things::{CurveThing, PointThing, Thing};
+use super::points::unit;
+use super::things::{CurveThing, Made, PointThing, Thing};
 use crate::exchange::Loss;
 use roxmltree::Node;
 use std::sync::Arc;

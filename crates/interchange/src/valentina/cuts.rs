@@ -2,7 +2,7 @@
 
 use super::build::{Build, Slot, reference};
 use super::kinds::LENGTH;
-use super::points::Made;
+use super::things::Made;
 use super::things::{CurveThing, PointThing, Thing};
 use crate::exchange::Loss;
 use roxmltree::Node;

@@ -3,7 +3,7 @@
 use super::build::{Build, attribute_of};
 use super::cuts::parts;
 use super::kinds::{LENGTH, Quantity};
-use super::things::PointThing;
+use super::things::{Made, PointThing};
 use crate::exchange::Loss;
 use roxmltree::Node;
 use toile_geometry::{Curve as Piece, Path, Vec2};
@@ -13,9 +13,6 @@ use toile_pattern::{Number, PointRule};
 const AXIS: f64 = 0.1;
 /// A crossing within this distance of the start of its axis is no crossing beyond it (m).
 const SAME_PLACE: f64 = 1e-9;
-
-/// Answer of a tool: the point, or the reason in words why it cannot be made.
-pub(super) type Made = Result<PointThing, String>;
 
 /// Makes the point of a tool. `None`: the tool is none of these.
 pub(super) fn point(build: &mut Build, node: Node<'_, '_>, tool: &str) -> Option<Made> {

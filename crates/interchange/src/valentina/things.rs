@@ -16,6 +16,9 @@ pub(super) struct PointThing {
     pub sheet: usize,
 }
 
+/// Answer of a tool: the point, or the reason in words why it cannot be made.
+pub(super) type Made = Result<PointThing, String>;
+
 /// A curve that was read, or a part of one.
 #[derive(Clone, Debug)]
 pub(super) struct CurveThing {
