@@ -37,6 +37,8 @@ pub enum Content {
     InsertedLines,
     /// Pleats.
     Pleats,
+    /// Operations on panels of other kinds.
+    Operations,
     /// Allowances along edges.
     Allowances,
     /// Shapes of the cut line at corners.
@@ -77,6 +79,7 @@ impl Content {
             Self::Splits => "splits",
             Self::InsertedLines => "inserted lines",
             Self::Pleats => "pleats",
+            Self::Operations => "other operations",
             Self::Allowances => "seam allowances",
             Self::Corners => "corners of the cut line",
             Self::Grains => "grains",

@@ -36,9 +36,12 @@ impl Content {
             Self::Markers | Self::Fitting => NO_PLACE,
             Self::Fabrics => Some("written by their names alone"),
             Self::Formulas | Self::Constructions => Some("written as drafted"),
-            Self::Darts | Self::Spreads | Self::Splits | Self::Pleats | Self::InsertedLines => {
-                Some("written as drafted")
-            }
+            Self::Darts
+            | Self::Spreads
+            | Self::Splits
+            | Self::Pleats
+            | Self::InsertedLines
+            | Self::Operations => Some("written as drafted"),
             Self::Folds => Some("written unfolded"),
             Self::Allowances => Some("written as cut and sew lines"),
             Self::Corners => Some("written as the cut line that they give"),
@@ -68,7 +71,7 @@ impl Content {
             Self::Formulas | Self::Constructions => AS_DRAFTED,
             Self::Darts => Some("written as edges that are sewn together"),
             Self::Folds => Some("written unfolded"),
-            Self::Spreads | Self::Splits | Self::Pleats => AS_DRAFTED,
+            Self::Spreads | Self::Splits | Self::Pleats | Self::Operations => AS_DRAFTED,
             Self::Copies => Some("written as panels of their own"),
             Self::Eases => Some("kept as the lengths of both sides alone"),
         }
@@ -213,16 +216,24 @@ impl Counter {
     }
 
     fn operation(&mut self, operation: &Operation) {
-        let content = match &operation.kind {
-            OperationKind::Dart { .. }
-            | OperationKind::Diamond { .. }
-            | OperationKind::Pivot { .. } => Content::Darts,
-            OperationKind::Fold { .. } => Content::Folds,
-            OperationKind::Spread { .. } => Content::Spreads,
-            OperationKind::Split { .. } => Content::Splits,
-            OperationKind::Insert { .. } => Content::InsertedLines,
-            OperationKind::Pleat { .. } => Content::Pleats,
-        };
+        type Kind = OperationKind;
+        let kind = &operation.kind;
+        let named: &[(bool, Content)] = &[
+            (
+                matches!(
+                    kind,
+                    Kind::Dart { .. } | Kind::Diamond { .. } | Kind::Pivot { .. }
+                ),
+                Content::Darts,
+            ),
+            (matches!(kind, Kind::Fold { .. }), Content::Folds),
+            (matches!(kind, Kind::Spread { .. }), Content::Spreads),
+            (matches!(kind, Kind::Split { .. }), Content::Splits),
+            (matches!(kind, Kind::Insert { .. }), Content::InsertedLines),
+            (matches!(kind, Kind::Pleat { .. }), Content::Pleats),
+        ];
+        let own = named.iter().find(|(is_own, _)| *is_own);
+        let content = own.map_or(Content::Operations, |(_, content)| *content);
         self.add(content, 1);
     }
 
