@@ -130,6 +130,8 @@ fn begin(program: &Path, job_file: &Path) -> Result<Child, SessionError> {
         .args(["job", "--here"])
         .arg(job_file)
         .env("RAYON_NUM_THREADS", "1")
+        // The last words of a process are read: they say why it ended.
+        .env("RUST_BACKTRACE", "0")
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::piped());
