@@ -1,7 +1,7 @@
 //! Surfaces with one outline flattened to panels: the flat shape of fabric that takes the least energy to cover the
 //! surface, and darts where it would stretch too far. It knows nothing of patterns, bodies or files.
 //!
-//! [`flatten`] does all of it: [`Region`] checks that the surface can be flattened, [`conformal`], [`tutte`] and [`arap`]
+//! [`flatten()`] does all of it: [`Region`] checks that the surface can be flattened, [`conformal`], [`tutte`] and [`arap`]
 //! give a start, [`RestEnergy`] and [`minimise`] the shape of least energy, [`dart`] cuts.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 

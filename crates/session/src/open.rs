@@ -3,7 +3,7 @@
 //! # Decided with
 //! - [`toile_interchange::FileKind`], [`crate::input::read_file`]: kinds of files; pipes and standard input;
 //! - [`toile_interchange::read`], [`toile_interchange::Format`]: patterns read; formats of patterns;
-//! - [`crate::convert`]: patterns written;
+//! - [`crate::convert()`]: patterns written;
 //! - [`crate::stored_marker::nest_marker`]: markers are stored in Toile's own format alone;
 //! - [`crate::mesh_file::open_mesh`], [`crate::bodies::body_of`]: meshes; files of bodies;
 //! - [`crate::fitting::files_to_try_on`]: files that a pattern names.

@@ -1,4 +1,4 @@
-//! Patterns of every format: one way in, [`read`], and one way out, [`write`].
+//! Patterns of every format: one way in, [`read`], and one way out, [`write()`].
 //!
 //! Neither opens a file: whoever calls brings the bytes and takes the files that were written. Decisions on
 //! what a file leaves open are returned as [`Guess`]es, each with the option that decides otherwise; what a

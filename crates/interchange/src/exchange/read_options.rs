@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use toile_pattern::DisplayUnit;
 
 /// Answers to what a file may leave open; without them the reader decides, and returns its decisions as
-/// [`Guess`]es.
+/// [`Guess`](crate::Guess)es.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReadOptions {
