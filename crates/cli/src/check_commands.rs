@@ -102,10 +102,7 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
     events.extend(found.iter().map(|sized| Event::Warned {
         message: format!("{}: {sized}", path.display()),
     }));
-    let read = events.iter().find_map(|event| match event {
-        Event::FileRead(found) => Some(found.clone()),
-        _ => None,
-    });
+    let read = events.iter().find_map(Event::file_read).cloned();
     let place = |place| session.project().pattern.describe(place);
     let listed: Vec<Value> = found
         .iter()

@@ -61,8 +61,6 @@ fn lasting(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             match path.is_dir() {
                 true => left.push(path),
                 false if path.ends_with("timing.json") => {}
-                // Half of a file that a killed process was writing, under a name of its own.
-                false if path.extension().is_some_and(|ending| ending == "partial") => {}
                 false => {
                     let name = path.strip_prefix(folder).unwrap().to_owned();
                     found.insert(name, std::fs::read(&path).unwrap());

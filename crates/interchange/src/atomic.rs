@@ -135,10 +135,46 @@ fn ordinary_target(path: &Path) -> Result<PathBuf, FileError> {
     }
 }
 
-/// A new temporary file with the permissions that any new file would get.
+/// Beginning and end of the names of temporary files.
+const TEMPORARY: [&str; 2] = [".toile-", ".partial"];
+/// Times at which a temporary file is made again because somebody swept it before it was locked.
+const MAX_TRIES: usize = 20;
+
+/// Removes the temporary files in a folder whose writers died before they were complete. Those of living writers
+/// stay: each holds a lock on its own. Files that cannot be removed are left.
+pub fn sweep_unfinished(folder: &Path) {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    for path in entries.map(|entry| entry.path()) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let [start, end] = TEMPORARY;
+        if name.starts_with(start)
+            && name.ends_with(end)
+            && let Ok(file) = fs::File::open(&path)
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(&path);
+        }
+    }
+}
+
+/// A new temporary file with a lock that is held for as long as it is open, on systems with such locks.
 fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
+    for _ in 0..MAX_TRIES {
+        let file = unlocked_in(folder)?;
+        let _ = file.as_file().lock();
+        if file.path().exists() {
+            return Ok(file);
+        }
+    }
+    Err(io::Error::other(
+        "other processes remove what is made there",
+    ))
+}
+
+/// A new temporary file with the permissions that any new file would get.
+fn unlocked_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".toile-").suffix(".partial");
+    builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -182,6 +218,17 @@ mod tests {
         write_atomically(&path, b"two, longer").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two, longer");
         assert_eq!(names(folder.path()), ["a.json"]);
+    }
+
+    #[test]
+    fn only_temporary_files_of_dead_writers_are_swept() {
+        let folder = tempfile::tempdir().unwrap();
+        let alive = temporary_in(folder.path()).unwrap();
+        fs::write(folder.path().join(".toile-dead.partial"), b"half").unwrap();
+        fs::write(folder.path().join("a.json"), b"whole").unwrap();
+        sweep_unfinished(folder.path());
+        let own = alive.path().file_name().unwrap().to_str().unwrap();
+        assert_eq!(names(folder.path()), [own, "a.json"]);
     }
 
     #[test]

@@ -64,7 +64,9 @@ mod x3d_vrml;
 mod x3d_xml;
 mod xml;
 
-pub use atomic::{check_folder, write_all_atomically, write_atomically, write_new_atomically};
+pub use atomic::{
+    check_folder, sweep_unfinished, write_all_atomically, write_atomically, write_new_atomically,
+};
 pub use bvh::read_bvh;
 pub use character_json::{read_character, write_character};
 pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};

@@ -345,7 +345,11 @@ fn sizes_of_a_nest_take_marks_by_the_number_of_their_vertex() {
             places[1]
         );
     }
-    assert_eq!(reading.losses, []);
+    let told = reading
+        .losses
+        .iter()
+        .map(|loss| (loss.what.as_str(), loss.count));
+    assert_eq!(told.collect::<Vec<_>>(), [("depths of notches", 2)]);
 }
 
 #[test]
@@ -495,6 +499,37 @@ fn twins_of_lines_make_it_astm_and_drills_and_texts_are_told() {
         .map(|l| (l.what.as_str(), l.count))
         .collect();
     assert_eq!(told, [("drill holes", 1), ("texts", 1)]);
+}
+
+#[test]
+fn what_lies_nowhere_is_told() {
+    let mut file = File::default();
+    metric(&mut file);
+    let open = line(1, &[[900.0, 0.0], [950.0, 0.0], [990.0, 90.0]], false, &[]);
+    let parts = [
+        line(1, &SKIRT, true, &[]),
+        open,
+        point(4, [200.0, 300.0], &[]),
+        line(9, &[[0.0, 50.0], [400.0, 50.0]], false, &[]),
+    ];
+    file.block("BACK", &parts);
+    file.insert("BACK", &[(10, "900")]);
+    file.insert("SLEEVE", &[]);
+    let reading = file.read();
+    let told: Vec<&str> = reading
+        .losses
+        .iter()
+        .map(|loss| loss.what.as_str())
+        .collect();
+    let expected = [
+        "a further place of a piece",
+        "a piece put in",
+        "cut lines",
+        "reference lines",
+        "a notch",
+    ];
+    assert_eq!(told, expected);
+    assert!(reading.pattern.panels[0].notches.is_empty());
 }
 
 #[test]

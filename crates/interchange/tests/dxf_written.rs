@@ -125,7 +125,7 @@ fn shipped_patterns_come_back_in_every_size() {
                             let off = two.notches.iter().map(|n| (n.point - notch.point).norm());
                             let off = off.fold(f64::INFINITY, f64::min);
                             // It is told by its place on the cut line, from which the sew line is found.
-                            assert!(off < 1e-3, "{place}: a notch is {off} m off");
+                            assert!(off < 2e-4, "{place}: a notch is {off} m off");
                         }
                     }
                     let turn = (own.grain - other.grain).rem_euclid(std::f64::consts::PI);

@@ -47,6 +47,8 @@ pub enum Event {
 pub struct FoundInFile {
     /// The format.
     pub format: Format,
+    /// Files that were read with it: tables of grade rules or measurements.
+    pub companions: Vec<PathBuf>,
     /// Decisions on what the file leaves open.
     pub guesses: Vec<Guess>,
     /// Contents that were left out.
@@ -54,6 +56,14 @@ pub struct FoundInFile {
 }
 
 impl Event {
+    /// What reading a file found out, if this event is about that.
+    pub fn file_read(&self) -> Option<&FoundInFile> {
+        if let Self::FileRead(found) = self {
+            return Some(found);
+        }
+        None
+    }
+
     /// A warning for each note.
     pub(crate) fn warnings(notes: &[String]) -> impl Iterator<Item = Self> + '_ {
         notes.iter().map(|note| Self::Warned {

@@ -5,7 +5,7 @@ use crate::bodies::mannequin_of;
 use crate::event::FoundInFile;
 use crate::fabrics::{fabric_of_file, is_known_fabric};
 use crate::input::{is_input, is_pipe};
-use crate::open::{is_sample, open_pattern_from};
+use crate::open::{OpenedPattern, is_sample, open_pattern_from};
 use crate::paths::{relative, resolved};
 use crate::placed_panels::PanelOrigin;
 use crate::{BodyChoice, FabricChoice, OpenOptions, Project, SessionError, WornGarment};
@@ -41,10 +41,14 @@ impl Project {
         origin: PanelOrigin,
         options: &OpenOptions,
     ) -> Result<OpenedProject, SessionError> {
-        let opened = open_pattern_from(path, origin, options)?;
+        let OpenedPattern {
+            reading: opened,
+            companions,
+        } = open_pattern_from(path, origin, options)?;
         let mut notes = opened.words();
         let found = FoundInFile {
             format: opened.format,
+            companions,
             guesses: opened.guesses,
             losses: opened.losses,
         };
@@ -213,7 +217,9 @@ pub(crate) fn try_on(project: &mut Project, fitting: Fitting, origin: PanelOrigi
             Err(error) => Err(error),
         };
         let pattern = match pattern {
-            Ok(opened) => {
+            Ok(OpenedPattern {
+                reading: opened, ..
+            }) => {
                 let note = |note| format!("{}: {note}", path.display());
                 notes.extend(opened.words().into_iter().map(note));
                 Some(Arc::new(opened.pattern))

@@ -78,7 +78,15 @@ impl OpenOptions {
 /// # Errors
 /// The file cannot be read, or is not a pattern.
 pub fn open_pattern(path: &Path) -> Result<Reading, SessionError> {
-    open_pattern_from(path, PanelOrigin::Automatic, &OpenOptions::default())
+    let opened = open_pattern_from(path, PanelOrigin::Automatic, &OpenOptions::default())?;
+    Ok(opened.reading)
+}
+
+/// A pattern that was opened, and the files that were read with it.
+pub(crate) struct OpenedPattern {
+    pub reading: Reading,
+    /// Tables of grade rules or measurements that belong to it.
+    pub companions: Vec<PathBuf>,
 }
 
 /// Reads a pattern file as options say, with its panels placed round an origin: see [`open_pattern`].
@@ -89,63 +97,60 @@ pub(crate) fn open_pattern_from(
     path: &Path,
     origin: PanelOrigin,
     options: &OpenOptions,
-) -> Result<Reading, SessionError> {
+) -> Result<OpenedPattern, SessionError> {
     let bytes = match sample(path) {
         Some(text) => text.as_bytes().to_vec(),
         None => read_file(path)?,
     };
-    let companions = companions(path, &bytes, &options.with)?;
-    let mut opened =
-        read(&bytes, &options.reading, &companions).map_err(|error| SessionError::Format {
+    let companions = companions(path, &bytes, &options.with);
+    let read_whole = |file: &PathBuf| {
+        Ok(Companion {
+            name: file
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned(),
+            bytes: read_file(file)?,
+        })
+    };
+    let contents: Result<Vec<Companion>, SessionError> =
+        companions.iter().map(read_whole).collect();
+    let mut reading =
+        read(&bytes, &options.reading, &contents?).map_err(|error| SessionError::Format {
             path: PathBuf::from(path),
             error,
         })?;
-    if opened.pattern.name.is_empty() {
-        opened.pattern.name = stem(path);
+    if reading.pattern.name.is_empty() {
+        reading.pattern.name = stem(path);
     }
-    opened.notes.extend(origin.settle(&mut opened.pattern));
-    Ok(opened)
+    reading.notes.extend(origin.settle(&mut reading.pattern));
+    Ok(OpenedPattern {
+        reading,
+        companions,
+    })
 }
 
 /// The files that belong to a pattern: those given, else those that it names, where they lie in its folder or
 /// where it says. A file that it names and that is not there is left to the reader.
-fn companions(
-    path: &Path,
-    bytes: &[u8],
-    given: &[PathBuf],
-) -> Result<Vec<Companion>, SessionError> {
-    let name = |path: &Path| {
-        let name = path.file_name().unwrap_or_default();
-        name.to_string_lossy().into_owned()
-    };
+fn companions(path: &Path, bytes: &[u8], given: &[PathBuf]) -> Vec<PathBuf> {
     if !given.is_empty() {
-        let each = given.iter().map(|file| {
-            Ok(Companion {
-                name: name(file),
-                bytes: read_file(file)?,
-            })
-        });
-        return each.collect();
+        return given.to_vec();
     }
     if is_sample(path) || is_pipe(path) {
-        return Ok(Vec::new());
+        return Vec::new();
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut found = Vec::new();
-    for named in companion_names(bytes) {
+    let found = |named: String| {
         // Files of other systems name folders with backslashes.
         let named = named.replace('\\', "/");
         let own = named.rsplit('/').next().unwrap_or_default();
-        let places = [folder.join(own), folder.join(&named)];
-        let place = places.iter().find(|place| place.is_file());
-        if let Some(place) = place {
-            found.push(Companion {
-                name: name(place),
-                bytes: read_file(place)?,
-            });
-        }
-    }
-    Ok(found)
+        let mut places = [folder.join(own), folder.join(&named)].into_iter();
+        places.find(|place| place.is_file())
+    };
+    companion_names(bytes)
+        .into_iter()
+        .filter_map(found)
+        .collect()
 }
 
 /// Reads a `marker.json`.

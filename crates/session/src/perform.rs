@@ -395,7 +395,7 @@ impl Session {
         notes: &mut Vec<String>,
     ) -> Result<Arc<Pattern>, SessionError> {
         refuse_itself(&self.project, path)?;
-        let opened = open_pattern_from(path, self.origin, &OpenOptions::default())?;
+        let opened = open_pattern_from(path, self.origin, &OpenOptions::default())?.reading;
         let note = |note: &String| format!("{}: {note}", path.display());
         notes.extend(opened.words().iter().map(note));
         Ok(Arc::new(opened.pattern))

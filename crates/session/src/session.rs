@@ -201,7 +201,11 @@ impl Session {
             command,
             Command::OpenPattern { .. } | Command::RestorePattern { .. }
         ) {
-            true => files_to_try_on(&self.project),
+            true => {
+                let read = events.iter().filter_map(Event::file_read);
+                let read = read.flat_map(|found| found.companions.clone());
+                read.chain(files_to_try_on(&self.project)).collect()
+            }
             false => Vec::new(),
         };
         self.journal.push_with(self.lasting(command)?, &more);

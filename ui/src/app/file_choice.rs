@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// File name extensions of patterns.
-pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf"];
+pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf", "val", "sm2d"];
 /// File name extensions of measurement tables and mannequins.
 pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
 
@@ -63,7 +63,9 @@ impl FileChoice {
                     let name = entry.file_name().to_string_lossy().into_owned();
                     let is_file = entry.path().is_file();
                     let mut endings = self.endings.iter();
-                    let is_shown = endings.any(|ending| name.ends_with(&format!(".{ending}")));
+                    // Programs on Windows write endings in capitals, too.
+                    let lower = name.to_lowercase();
+                    let is_shown = endings.any(|ending| lower.ends_with(&format!(".{ending}")));
                     if !name.starts_with('.') && (!is_file || is_shown) {
                         self.entries.push(Entry { is_file, name });
                     }

@@ -1,6 +1,6 @@
 //! Seam allowances, from the distance of the cut line to the line that is sewn.
 
-use toile_geometry::Vec2;
+use toile_geometry::{Polygon, Vec2, closest_on_segment};
 
 /// Largest difference between distances along an edge that count as one width (m).
 const EVEN: f64 = 1e-4;
@@ -67,16 +67,16 @@ pub(crate) struct Nearest {
 pub(crate) fn nearest(p: Vec2, ring: &[Vec2]) -> Option<Nearest> {
     let next = ring.iter().cycle().skip(1);
     let places = ring.iter().zip(next).enumerate().map(|(chord, (&a, &b))| {
-        let along = b - a;
-        let length = along.norm_squared();
-        let share = match length > 0.0 {
-            true => ((p - a).dot(&along) / length).clamp(0.0, 1.0),
-            false => 0.0,
-        };
+        let place = closest_on_segment(p, [a, b]);
+        let length = (b - a).norm();
         Nearest {
             chord,
-            share,
-            distance: (a + along * share - p).norm(),
+            share: if length > 0.0 {
+                (place - a).norm() / length
+            } else {
+                0.0
+            },
+            distance: (place - p).norm(),
         }
     });
     places.min_by(|a, b| a.distance.total_cmp(&b.distance))
@@ -85,20 +85,11 @@ pub(crate) fn nearest(p: Vec2, ring: &[Vec2]) -> Option<Nearest> {
 /// Whether one closed line lies evenly within another: every vertex has a distance of at most `most` (m) to it,
 /// and lies inside.
 pub(crate) fn is_evenly_inside(inner: &[Vec2], outer: &[Vec2], most: f64) -> bool {
+    let around = Polygon::new(outer.to_vec());
     inner.len() > 2
         && inner
             .iter()
-            .all(|&p| is_inside(p, outer) && distance(p, outer) <= most)
-}
-
-/// Whether a point lies within a closed line.
-pub(crate) fn is_inside(p: Vec2, ring: &[Vec2]) -> bool {
-    let next = ring.iter().cycle().skip(1);
-    let crossings = ring.iter().zip(next).filter(|(a, b)| {
-        let spans = (a.y > p.y) != (b.y > p.y);
-        spans && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-    });
-    crossings.count() % 2 == 1
+            .all(|&p| around.contains(p) && distance(p, outer) <= most)
 }
 
 #[cfg(test)]

@@ -121,17 +121,6 @@ impl DrawnLine {
     }
 }
 
-/// Area within a closed line (m²), positive if it runs counter-clockwise.
-pub(crate) fn signed_area(points: &[Vec2]) -> f64 {
-    let next = points.iter().cycle().skip(1);
-    let twice: f64 = points
-        .iter()
-        .zip(next)
-        .map(|(a, b)| a.x * b.y - a.y * b.x)
-        .sum();
-    0.5 * twice
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,13 +140,5 @@ mod tests {
         assert_eq!(line.by_size[0], [at(0.0), at(1.0), at(1.0)]);
         assert_eq!(line.by_size[1], [at(0.0), at(1.0), at(1.1)]);
         assert_eq!(line.is_corner, [true, false, false]);
-    }
-
-    #[test]
-    fn area_has_the_sign_of_its_winding() {
-        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from);
-        assert_eq!(signed_area(&square), 1.0);
-        let back: Vec<Vec2> = square.iter().rev().copied().collect();
-        assert_eq!(signed_area(&back), -1.0);
     }
 }

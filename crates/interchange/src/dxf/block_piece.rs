@@ -3,8 +3,7 @@
 use super::drawing::{Block, Drawn};
 use super::labels::Labels;
 use crate::drawn::chain::joined;
-use crate::drawn::piece::signed_area;
-use toile_geometry::Vec2;
+use toile_geometry::{Vec2, ring_area};
 use toile_pattern::NotchKind;
 
 /// Largest gap between the ends of open lines that meet (units of the file).
@@ -92,7 +91,6 @@ pub(super) struct BlockPiece {
     pub mirror: Vec<BlockLine>,
     pub grain: Vec<BlockLine>,
     pub turn_points: Vec<Vec2>,
-    pub curve_points: Vec<Vec2>,
     /// Notches with their shape.
     pub notches: Vec<(Vec2, NotchKind)>,
     pub drills: Vec<Vec2>,
@@ -100,9 +98,15 @@ pub(super) struct BlockPiece {
     pub rules: Vec<(Vec2, u32)>,
     /// Whether it has dense twins of its lines.
     pub has_twins: bool,
-    /// Whether a notch has a U shape, which is not known here.
+    /// Number of notches of a U shape, which is not known here.
     pub u_notches: usize,
-    /// Lines and points on layers of no standard.
+    /// Number of notches with a depth of their own.
+    pub depths: usize,
+    /// Number of cut lines that are not closed.
+    pub open_cuts: usize,
+    /// Number of lines on layers of grading, stripes, plaids and annotation.
+    pub references: usize,
+    /// Number of lines and points on layers of no standard.
     pub others: usize,
 }
 
@@ -143,9 +147,14 @@ impl BlockPiece {
                 Drawn::Point {
                     at,
                     thickness,
-                    z: _,
+                    z,
                     angle: _,
-                } => piece.point(layer, entity.layer.trim() == "83", (*at, *thickness)),
+                } => {
+                    let has_depth = z.is_some_and(|z| z != 0.0);
+                    let is_notch = matches!(layer, Layer::Notches(_));
+                    piece.depths += usize::from(is_notch && has_depth);
+                    piece.point(layer, entity.layer.trim() == "83", (*at, *thickness));
+                }
                 Drawn::Text { at, text } => piece.text(*at, text),
             }
         }
@@ -161,20 +170,21 @@ impl BlockPiece {
                 Layer::Cutout => piece.cutouts.extend(found),
                 Layer::Mirror => piece.mirror.extend(found),
                 Layer::Grain => piece.grain.extend(found),
+                Layer::GradeReference | Layer::Annotation => piece.references += found.count(),
                 Layer::TurnPoints
                 | Layer::CurvePoints
                 | Layer::Notches(_)
-                | Layer::GradeReference
                 | Layer::Drill
                 | Layer::Twin
-                | Layer::Annotation
                 | Layer::Other => {}
             }
         }
+        let drawn = piece.cut.len();
         piece
             .cut
             .retain(|line| line.is_closed && line.points.len() > 2);
-        let area = |line: &BlockLine| signed_area(&line.points).abs();
+        piece.open_cuts = drawn - piece.cut.len();
+        let area = |line: &BlockLine| ring_area(&line.points).abs();
         piece.cut.sort_by(|a, b| area(b).total_cmp(&area(a)));
         piece
     }
@@ -182,7 +192,6 @@ impl BlockPiece {
     fn point(&mut self, layer: Layer, is_u: bool, (at, thickness): (Vec2, Option<f64>)) {
         match layer {
             Layer::TurnPoints => self.turn_points.push(at),
-            Layer::CurvePoints => self.curve_points.push(at),
             Layer::Notches(NotchKind::Slit) => {
                 // A width at the boundary makes a V of a slit.
                 let is_wide = thickness.is_some_and(|width| width.abs() > 0.0);
@@ -198,7 +207,8 @@ impl BlockPiece {
                 self.notches.push((at, kind));
             }
             Layer::Drill => self.drills.push(at),
-            Layer::Cut
+            Layer::CurvePoints
+            | Layer::Cut
             | Layer::GradeReference
             | Layer::Mirror
             | Layer::Grain

@@ -1,8 +1,11 @@
 //! Outlines of a block: one piece for each of those that lie in no other.
 
 use super::block_piece::{BlockLine, BlockPiece};
-use crate::drawn::allowance::{is_inside, nearest};
-use toile_geometry::Vec2;
+use crate::drawn::allowance::distance;
+use toile_geometry::{Polygon, Vec2};
+
+/// Distance from an outline at which a mark still belongs to it, as a share of the outline's length.
+const ON_OUTLINE: f64 = 1e-3;
 
 /// The pieces of a block: one for each closed cut line that lies in no other, with the marks and lines within
 /// it; none for a block without a closed cut line. Cut lines within others are cut out.
@@ -11,7 +14,8 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
     let mut outer: Vec<BlockLine> = Vec::new();
     for line in cut {
         let first = line.points[0];
-        match outer.iter().any(|known| is_inside(first, &known.points)) {
+        let holds = |known: &BlockLine| Polygon::new(known.points.clone()).contains(first);
+        match outer.iter().any(holds) {
             true => piece.cutouts.push(line),
             false => outer.push(line),
         }
@@ -24,11 +28,9 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
         return vec![piece];
     }
     let of = |(k, line): (usize, BlockLine)| {
-        let ring = line.points.clone();
-        let on = |p: &Vec2| {
-            let gap = 1e-3 * line.length();
-            is_inside(*p, &ring) || nearest(*p, &ring).is_some_and(|found| found.distance <= gap)
-        };
+        let around = Polygon::new(line.points.clone());
+        let gap = ON_OUTLINE * line.length();
+        let on = |p: &Vec2| around.contains(*p) || distance(*p, &line.points) <= gap;
         let lines = |all: &[BlockLine]| -> Vec<BlockLine> {
             all.iter()
                 .filter(|line| on(&line.points[0]))
@@ -44,7 +46,6 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
             mirror: lines(&piece.mirror),
             grain: lines(&piece.grain),
             turn_points: points(&piece.turn_points),
-            curve_points: points(&piece.curve_points),
             notches: piece
                 .notches
                 .iter()

@@ -8,14 +8,14 @@ use super::drawing::{Block, Drawn, DxfDrawing, Insert};
 use super::labels::Labels;
 use super::outlines::split;
 use super::sizes::sizes;
-use crate::drawn::allowance::{distance, is_evenly_inside, nearest};
+use crate::drawn::allowance::{distance, is_evenly_inside};
 use crate::drawn::builder::document;
 use crate::drawn::inset::inset;
-use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece, signed_area};
+use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece};
 use crate::drawn::unit::unit;
 use crate::{Format, FormatError, Guess, Loss, ReadOptions};
 use std::collections::BTreeMap;
-use toile_geometry::{Bounds2, Vec2};
+use toile_geometry::{Bounds2, Vec2, ring_area};
 use toile_pattern::{Cut, DisplayUnit, NotchKind, Pattern};
 
 /// Largest distance of a mark from the vertex that it names (m).
@@ -180,6 +180,20 @@ impl Reader {
             None => BlockPiece::of(block),
         });
         let mut pieces: Vec<BlockPiece> = blocks.flat_map(split).collect();
+        for (k, insert) in drawing.inserts.iter().enumerate() {
+            let name = &insert.block;
+            if drawing.blocks.iter().all(|block| block.name != *name) {
+                let why = "the file has no block of that name";
+                self.losses.push(Loss::at(name, "a piece put in", why));
+            } else if drawing.inserts[..k]
+                .iter()
+                .any(|before| before.block == *name)
+            {
+                let why = "a piece is read where it is put in first";
+                self.losses
+                    .push(Loss::at(name, "a further place of a piece", why));
+            }
+        }
         if pieces.is_empty() {
             // The cut layer of the markers that this program writes.
             if drawing.loose.iter().any(|entity| entity.layer == "CUT") {
@@ -459,7 +473,7 @@ impl Reader {
         by: f64,
     ) -> Option<DrawnLine> {
         let mut line = cut.clone();
-        if signed_area(line.in_size(base)) < 0.0 {
+        if ring_area(line.in_size(base)) < 0.0 {
             line.reverse();
         }
         let ends = fold.map(|[a, b]| [a, b, a]);
@@ -480,7 +494,7 @@ impl Reader {
         match moved {
             Some(by_size) => {
                 line.by_size = by_size;
-                if signed_area(cut.in_size(base)) < 0.0 {
+                if ring_area(cut.in_size(base)) < 0.0 {
                     line.reverse();
                 }
                 Some(line)
@@ -536,16 +550,9 @@ impl Reader {
 
     /// Tells what of a block has no place in the document.
     fn left_out(&mut self, name: &str, own: &BlockPiece) {
-        let far = own.notches.iter().filter(|(at, _)| {
-            let ring = own.cut.first().map_or(&[][..], |line| &line.points);
-            nearest(*at, ring).is_none()
-        });
+        let no_place = "the document has no place for them";
         let all = [
-            (
-                own.drills.len(),
-                "drill holes",
-                "the document has no place for them",
-            ),
+            (own.drills.len(), "drill holes", no_place),
             (
                 own.rules.len(),
                 "numbers of grade rules",
@@ -553,23 +560,31 @@ impl Reader {
             ),
             (own.u_notches, "U notches", "read as V notches"),
             (
+                own.depths,
+                "depths of notches",
+                "all are cut as deep as this program does",
+            ),
+            (own.open_cuts, "cut lines", "they are not closed"),
+            (own.references, "reference lines", no_place),
+            (
                 own.others,
                 "lines and points on layers of no standard",
                 "their meaning is not known",
             ),
-            (
-                own.labels.others.len(),
-                "texts",
-                "the document has no place for them",
-            ),
-            (far.count(), "notches", "they lie on no line"),
+            (own.labels.others.len(), "texts", no_place),
         ];
-        for (count, what, why) in all {
-            if count > 0 {
-                self.losses.push(Loss {
+        for (count, what, why) in all.into_iter().filter(|(count, ..)| *count > 0) {
+            // What several pieces lose is told once.
+            let alike = |loss: &&mut Loss| loss.what == what && loss.why == why;
+            match self.losses.iter_mut().find(alike) {
+                Some(loss) => {
+                    loss.count += count;
+                    loss.place.clear();
+                }
+                None => self.losses.push(Loss {
                     count,
                     ..Loss::at(name, what, why)
-                });
+                }),
             }
         }
     }

@@ -20,13 +20,6 @@ pub struct ReadOptions {
     pub allowance_inside: Option<f64>,
 }
 
-impl ReadOptions {
-    /// Whether nothing is answered.
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// A further file that a pattern needs: a table of grade rules or of measurements.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Companion {

@@ -7,13 +7,14 @@ use super::quantities::Quantities;
 use super::things::{CurveThing, PointThing, Thing};
 use super::translate::{Scope, translated, translated_single, value};
 use crate::exchange::{Guess, Loss};
+use crate::part_names::part_name;
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 use toile_geometry::{Curve as Piece, Path, Vec2};
 use toile_pattern::{
-    Curve, CurveId, CurveRule, Formula, NAME_LENGTH, Names, Number, Pattern, Point, PointId,
-    PointRule, Sheet, SheetId,
+    Curve, CurveId, CurveRule, Formula, Names, Number, Pattern, Point, PointId, PointRule, Sheet,
+    SheetId,
 };
 
 /// A sheet while it is built, with the names that are taken on it.
@@ -423,24 +424,6 @@ pub(super) fn reference(node: Node<'_, '_>, attribute: &str) -> Result<u32, Stri
     let text = attribute_of(node, attribute)?.trim();
     let number = text.parse();
     number.map_err(|_| format!("its {attribute} {text:?} is no number of a part"))
-}
-
-/// A valid name for a part, different from all names taken.
-pub(super) fn part_name(wanted: &str, taken: &mut BTreeSet<String>) -> String {
-    let clean: String = wanted
-        .chars()
-        .filter(|c| !c.is_control() && *c != '\'')
-        .take(NAME_LENGTH - 8)
-        .collect();
-    let clean = clean.trim();
-    let base = if clean.is_empty() { "unnamed" } else { clean };
-    let mut name = base.to_owned();
-    let mut count = 1;
-    while !taken.insert(name.clone()) {
-        count += 1;
-        name = format!("{base} {count}");
-    }
-    name
 }
 
 /// The value of a plain number that an attribute may have.

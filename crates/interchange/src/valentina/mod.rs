@@ -33,8 +33,9 @@ mod tests;
 
 use crate::FormatError;
 use crate::exchange::{Companion, Guess, Loss};
+use crate::part_names::part_name;
 use crate::xml::Xml;
-use build::{Build, part_name};
+use build::Build;
 use kinds::FileUnit;
 use roxmltree::Node;
 use std::collections::BTreeSet;

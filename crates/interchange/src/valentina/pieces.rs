@@ -1,10 +1,11 @@
 //! Pieces of a file as panels.
 
-use super::build::{Build, part_name, plain, reference};
+use super::build::{Build, plain, reference};
 use super::kinds::{LENGTH, Quantity};
 use super::nodes::{Outline, Stretch, is_yes, outline};
 use super::things::{PointThing, Thing};
 use crate::exchange::Loss;
+use crate::part_names::part_name;
 use crate::xml::Xml;
 use roxmltree::Node;
 use std::collections::{BTreeSet, HashMap};

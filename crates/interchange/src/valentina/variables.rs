@@ -1,6 +1,6 @@
 //! Measurements and increments of a file: names that its formulas use.
 
-use super::build::{Build, part_name};
+use super::build::Build;
 use super::expression::Expression;
 use super::kinds::{LENGTH, PLAIN, Quantity, Symbol};
 use super::quantities::{constant, demand, quantity_of};
@@ -9,6 +9,7 @@ use crate::FormatError;
 use crate::exchange::Companion;
 use crate::exchange::Guess;
 use crate::measurements_seamly::{SeamlyRows, SizeChoice, seamly_rows};
+use crate::part_names::part_name;
 use crate::xml::Xml;
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};

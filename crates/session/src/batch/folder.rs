@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use toile_interchange::{FileError, write_atomically, write_new_atomically};
+use toile_interchange::{FileError, sweep_unfinished, write_atomically, write_new_atomically};
 
 /// The format's name in its file.
 const FORMAT: &str = "toile-batch-folder";
@@ -107,6 +107,7 @@ impl BatchFolder {
 
     /// Removes what dead writers left.
     pub fn sweep(&self) {
+        sweep_unfinished(&self.path);
         let folders = fs::read_dir(self.path.join("jobs")).into_iter().flatten();
         folders.flatten().for_each(|entry| sweep(&entry.path()));
     }

@@ -5,7 +5,7 @@ use super::spec::{AskedSizes, Named, Spec};
 use super::work::{FILE, Work};
 use crate::fabrics::is_known_fabric;
 use crate::fitting::files_to_try_on;
-use crate::{Project, SessionError};
+use crate::{OpenOptions, PanelOrigin, Project, SessionError};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use toile_interchange::Format;
@@ -23,13 +23,17 @@ pub fn list_jobs(spec: &Spec) -> Result<Vec<Job>, SessionError> {
     let mut jobs = Vec::new();
     let mut digests = FileDigests::default();
     for pattern in &spec.patterns {
-        let opened = Project::open(Path::new(&pattern.argument)).ok();
-        let project = opened.as_ref().map(|(project, _)| project);
+        let path = Path::new(&pattern.argument);
+        let options = OpenOptions::default();
+        let opened = Project::open_from(path, PanelOrigin::Automatic, &options).ok();
+        let project = opened.as_ref().map(|opened| &opened.project);
+        let companions = opened.iter().flat_map(|opened| &opened.found.companions);
+        let files = project.map(files_to_try_on).unwrap_or_default();
         let own = OwnJobs {
             spec,
             pattern,
             sizes: sizes(spec, pattern, project)?,
-            files: project.map(files_to_try_on).unwrap_or_default(),
+            files: companions.cloned().chain(files).collect(),
         };
         if let Some(project) = project {
             check_fabrics(spec, pattern, project)?;

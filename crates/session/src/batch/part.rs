@@ -12,7 +12,7 @@ use std::fs::{self, File};
 use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use toile_interchange::{FileError, write_atomically, write_new_atomically};
+use toile_interchange::{FileError, sweep_unfinished, write_atomically, write_new_atomically};
 
 /// Ending of the folder that a process writes into.
 const PART: &str = "part";
@@ -214,6 +214,7 @@ pub(crate) fn is_being_done(folder: &Path) -> bool {
 
 /// Removes what dead writers left in the folder of a job.
 pub(crate) fn sweep(folder: &Path) {
+    sweep_unfinished(folder);
     for part in parts(folder) {
         let Ok(file) = File::open(&part) else {
             continue;
