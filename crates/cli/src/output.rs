@@ -311,6 +311,8 @@ fn meaning(path: &Path) -> &'static str {
         "fit.png" => "how much the cloth is stretched",
         "pieces.pdf" => "the pieces on sheets of A4, at true size",
         "pieces.svg" => "the pieces on one page, at true size",
+        "pattern.json" => "the pattern for GarmentCode",
+        name if name.starts_with("pattern-") => "the pattern for programs of the trade",
         "report.json" => "what was made, in numbers",
         "timing.json" => "how long it took",
         "journal.jsonl" => "the commands, for `toile replay`",

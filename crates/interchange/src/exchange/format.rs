@@ -1,5 +1,6 @@
 //! Formats of patterns.
 
+use super::ReadOption;
 use crate::FileKind;
 use serde::{Deserialize, Serialize};
 use strum::{VariantArray, VariantNames};
@@ -117,6 +118,16 @@ impl Format {
             Self::DxfAstm => "DXF-ASTM",
             Self::Valentina => "Valentina",
             Self::Seamly => "Seamly2D",
+        }
+    }
+
+    /// Whether a reader of the format has a use for an answer to what files leave open.
+    pub fn takes(self, option: ReadOption) -> bool {
+        match (self, option) {
+            (_, ReadOption::Format) => true,
+            (Self::Native | Self::GarmentCode, _) => false,
+            (Self::Valentina | Self::Seamly, option) => option == ReadOption::With,
+            (Self::DxfAama | Self::DxfAstm, option) => option != ReadOption::With,
         }
     }
 

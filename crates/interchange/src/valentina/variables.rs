@@ -7,7 +7,7 @@ use super::quantities::{constant, demand, quantity_of};
 use super::translate::{translated, value};
 use crate::FormatError;
 use crate::exchange::Companion;
-use crate::exchange::Guess;
+use crate::exchange::{Guess, ReadOption};
 use crate::measurements_seamly::{SeamlyRows, SizeChoice, seamly_rows};
 use crate::part_names::part_name;
 use crate::xml::Xml;
@@ -381,7 +381,7 @@ fn tell(
             what: "measurements",
             chosen: format!("{} of an average adult", listed(&predicted)),
             because: because.clone(),
-            option: "--with",
+            option: ReadOption::With,
         });
     }
     if !unknown.is_empty() {
@@ -389,7 +389,7 @@ fn tell(
             what: "unknown measurements",
             chosen: format!("10 cm or 0 degrees for {}", listed(&unknown)),
             because,
-            option: "--with",
+            option: ReadOption::With,
         });
     }
 }
