@@ -89,6 +89,12 @@ pub(super) fn losses(pattern: &Pattern, format: Format) -> Vec<Loss> {
     lost.collect()
 }
 
+/// The contents of a pattern: every kind that it has, with the number of these.
+pub fn contents(pattern: &Pattern) -> Vec<(Content, usize)> {
+    let all = Content::VARIANTS.iter().copied().zip(counted(pattern));
+    all.filter(|(_, count)| *count > 0).collect()
+}
+
 /// Number of contents of each kind, in the order of the kinds.
 fn counted(pattern: &Pattern) -> [usize; Content::COUNT] {
     let mut counter = Counter([0; Content::COUNT]);

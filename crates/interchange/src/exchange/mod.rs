@@ -26,6 +26,7 @@ mod writing;
 mod tests;
 
 pub use content::Content;
+pub use contents::contents;
 pub use format::Format;
 pub use guess::Guess;
 pub use loss::Loss;
