@@ -73,7 +73,7 @@ pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
 pub use exchange::{
     Companion, Content, Format, Guess, Loss, ReadOption, ReadOptions, Reading, SizedDraft,
-    WriteSource, Writing, Written, companion_names, contents, read, write,
+    WriteSource, Writing, Written, companion_names, contents, format_tables, read, write,
 };
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};

@@ -78,6 +78,11 @@ impl Content {
     }
 }
 
+/// Reason why a format does not carry a kind of contents, or carries its result alone; `None`: it carries it.
+pub(super) fn lost_in(content: Content, format: Format) -> Option<&'static str> {
+    content.lost_in(format)
+}
+
 /// The contents of a pattern that a format has no place for, in the order of their kinds.
 pub(super) fn losses(pattern: &Pattern, format: Format) -> Vec<Loss> {
     let counts = counted(pattern);

@@ -19,6 +19,7 @@ mod loss;
 mod read_option;
 mod read_options;
 mod reading;
+mod tables;
 mod write_source;
 mod writing;
 
@@ -33,5 +34,6 @@ pub use loss::Loss;
 pub use read_option::ReadOption;
 pub use read_options::{Companion, ReadOptions};
 pub use reading::{Reading, companion_names, read};
+pub use tables::format_tables;
 pub use write_source::{SizedDraft, WriteSource, Writing, Written};
 pub use writing::write;
