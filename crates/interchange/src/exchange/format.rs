@@ -18,6 +18,8 @@ pub enum Format {
     #[serde(rename = "garmentcode")]
     #[strum(serialize = "garmentcode")]
     GarmentCode,
+    /// SVG.
+    Svg,
     /// DXF after ANSI/AAMA-292.
     DxfAama,
     /// DXF after ASTM D6673.
@@ -41,6 +43,7 @@ impl Format {
         match self {
             Self::Native => FileKind::Pattern,
             Self::GarmentCode => FileKind::GarmentCode,
+            Self::Svg => FileKind::Svg,
             Self::DxfAama | Self::DxfAstm => FileKind::Dxf,
             Self::Valentina => FileKind::ValentinaPattern,
             Self::Seamly => FileKind::SeamlyPattern,
@@ -61,6 +64,7 @@ impl Format {
         match self {
             Self::Native => ".toile.json",
             Self::GarmentCode => ".json",
+            Self::Svg => ".svg",
             Self::DxfAama | Self::DxfAstm => ".dxf",
             Self::Valentina => ".val",
             Self::Seamly => ".sm2d",
@@ -72,9 +76,12 @@ impl Format {
         match self {
             // GarmentCode's and Toile's own files are both JSON.
             Self::Native => vec![self.ending(), ".json"],
-            Self::GarmentCode | Self::DxfAama | Self::DxfAstm | Self::Valentina | Self::Seamly => {
-                vec![self.ending()]
-            }
+            Self::GarmentCode
+            | Self::Svg
+            | Self::DxfAama
+            | Self::DxfAstm
+            | Self::Valentina
+            | Self::Seamly => vec![self.ending()],
         }
     }
 
@@ -96,14 +103,14 @@ impl Format {
     pub fn holds_shapes(self) -> bool {
         match self {
             Self::Native | Self::Valentina | Self::Seamly => false,
-            Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
+            Self::GarmentCode | Self::Svg | Self::DxfAama | Self::DxfAstm => true,
         }
     }
 
     /// Whether one file holds the shapes of several sizes.
     pub fn holds_sizes(self) -> bool {
         match self {
-            Self::Native | Self::GarmentCode | Self::Valentina | Self::Seamly => false,
+            Self::Native | Self::GarmentCode | Self::Svg | Self::Valentina | Self::Seamly => false,
             Self::DxfAama | Self::DxfAstm => true,
         }
     }
@@ -113,6 +120,7 @@ impl Format {
         match self {
             Self::Native => "Toile",
             Self::GarmentCode => "GarmentCode",
+            Self::Svg => "SVG",
             Self::DxfAama => "DXF-AAMA",
             Self::DxfAstm => "DXF-ASTM",
             Self::Valentina => "Valentina",
@@ -123,7 +131,7 @@ impl Format {
     /// Whether this program writes it.
     pub fn is_written(self) -> bool {
         match self {
-            Self::Native | Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
+            Self::Native | Self::GarmentCode | Self::Svg | Self::DxfAama | Self::DxfAstm => true,
             Self::Valentina | Self::Seamly => false,
         }
     }
@@ -133,6 +141,7 @@ impl Format {
         let each = Self::all().iter().map(|of| match of {
             Self::Native => "*.toile.json",
             Self::GarmentCode => "GarmentCode specifications (JSON)",
+            Self::Svg => "SVG",
             Self::DxfAama => "DXF-AAMA",
             Self::DxfAstm => "DXF-ASTM",
             Self::Valentina => "Valentina's .val",
