@@ -312,6 +312,7 @@ fn meaning(path: &Path) -> &'static str {
         "pieces.pdf" => "the pieces on sheets of A4, at true size",
         "pieces.svg" => "the pieces on one page, at true size",
         "pattern.json" => "the pattern for GarmentCode",
+        "pattern.svg" => "the panels in layers, to be drawn on and opened again",
         name if name.starts_with("pattern-") => "the pattern for programs of the trade",
         "report.json" => "what was made, in numbers",
         "timing.json" => "how long it took",

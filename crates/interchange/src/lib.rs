@@ -56,6 +56,7 @@ mod scene_material;
 mod scene_motion;
 mod settings_reader;
 mod shown;
+mod svg;
 mod svg_text;
 mod valentina;
 mod x3d;

@@ -79,6 +79,8 @@ pub enum ExportFormat {
     PiecesSvg,
     /// `pattern.json`: the pattern as GarmentCode.
     PatternGarmentcode,
+    /// `pattern.svg`: the panels in layers, with the whole document in it.
+    PatternSvg,
     /// `pattern-aama.dxf`: the pieces in all sizes as DXF-AAMA.
     PatternDxfAama,
     /// `pattern-astm.dxf`: the pieces in all sizes as DXF-ASTM.
@@ -120,6 +122,7 @@ impl ExportFormat {
             Self::PiecesPdf => "pieces.pdf",
             Self::PiecesSvg => "pieces.svg",
             Self::PatternGarmentcode => "pattern.json",
+            Self::PatternSvg => "pattern.svg",
             Self::PatternDxfAama => "pattern-aama.dxf",
             Self::PatternDxfAstm => "pattern-astm.dxf",
             Self::Report => "report.json",
@@ -146,6 +149,7 @@ impl ExportFormat {
             | Self::PiecesPdf
             | Self::PiecesSvg
             | Self::PatternGarmentcode
+            | Self::PatternSvg
             | Self::PatternDxfAama
             | Self::PatternDxfAstm => false,
         }
@@ -178,6 +182,7 @@ impl ExportFormat {
             | Self::PiecesPdf
             | Self::PiecesSvg
             | Self::PatternGarmentcode
+            | Self::PatternSvg
             | Self::PatternDxfAama
             | Self::PatternDxfAstm
             | Self::Report
@@ -190,6 +195,7 @@ impl ExportFormat {
     pub fn of_pattern_format(format: Format) -> Option<Self> {
         match format {
             Format::GarmentCode => Some(Self::PatternGarmentcode),
+            Format::Svg => Some(Self::PatternSvg),
             Format::DxfAama => Some(Self::PatternDxfAama),
             Format::DxfAstm => Some(Self::PatternDxfAstm),
             Format::Native | Format::Valentina | Format::Seamly => None,

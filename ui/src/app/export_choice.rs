@@ -111,6 +111,11 @@ fn words(format: ExportFormat) -> (Group, &'static str, &'static str) {
         ExportFormat::PatternGarmentcode => {
             (Pattern, "GarmentCode", "panels and seams for GarmentCode")
         }
+        ExportFormat::PatternSvg => (
+            Pattern,
+            "SVG",
+            "the panels in layers, to be drawn on and opened again",
+        ),
         ExportFormat::PatternDxfAama => (
             Pattern,
             "DXF-AAMA",

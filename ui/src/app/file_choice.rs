@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// File name extensions of patterns.
-pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf", "val", "sm2d"];
+pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf", "svg", "val", "sm2d"];
 /// File name extensions of measurement tables and mannequins.
 pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
 

@@ -394,6 +394,7 @@ impl Reader {
                 by_size: by_size.collect(),
                 is_closed: usual.is_closed,
                 is_corner: Vec::new(),
+                ways: Vec::new(),
             })
         };
         let cut = in_all(&|piece| piece.cut.first().cloned()).unwrap_or_default();

@@ -14,7 +14,8 @@ impl Content {
     /// Reason why a format does not carry this kind, or carries its result alone; `None`: it carries it.
     fn lost_in(self, format: Format) -> Option<&'static str> {
         match format {
-            Format::Native => None,
+            // The document is in the metadata of an SVG file.
+            Format::Native | Format::Svg => None,
             Format::GarmentCode => self.lost_in_garmentcode(),
             Format::DxfAama | Format::DxfAstm => self.lost_in_dxf(),
             Format::Valentina | Format::Seamly => Some("the format is not written"),

@@ -9,7 +9,7 @@
 //! - [`crate::exchange::format::Format`]: formats, their words and endings;
 //! - [`crate::exchange::content::Content`], [`crate::exchange::contents`]: what a document holds, and which format
 //!   has a place for it;
-//! - [`crate::native`], [`crate::garmentcode`], [`crate::dxf`], [`crate::valentina`]: readers and writers of the formats.
+//! - [`crate::native`], [`crate::garmentcode`], [`crate::svg`], [`crate::dxf`], [`crate::valentina`]: readers and writers of the formats.
 
 mod content;
 mod contents;

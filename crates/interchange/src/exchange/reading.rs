@@ -3,6 +3,7 @@
 use super::{Companion, Format, Guess, Loss, ReadOption, ReadOptions};
 use crate::dxf::read_dxf;
 use crate::native::{Fitting, PatternFile};
+use crate::svg::{SvgReading, read_svg};
 use crate::valentina::{ValentinaReading, measurement_file, read_valentina};
 use crate::{ExpectedKind, FileKind, FormatError, read_document, read_garmentcode};
 use toile_pattern::Pattern;
@@ -53,9 +54,10 @@ pub fn companion_names(bytes: &[u8]) -> Vec<String> {
             let named = text(bytes).ok().and_then(measurement_file);
             named.into_iter().collect()
         }
-        Some(Format::Native | Format::GarmentCode | Format::DxfAama | Format::DxfAstm) | None => {
-            Vec::new()
-        }
+        Some(
+            Format::Native | Format::GarmentCode | Format::Svg | Format::DxfAama | Format::DxfAstm,
+        )
+        | None => Vec::new(),
     }
 }
 
@@ -94,6 +96,22 @@ pub fn read(
             Ok(Reading {
                 fitting,
                 notes: notes.iter().map(ToString::to_string).collect(),
+                ..Reading::plain(pattern, format)
+            })
+        }
+        Format::Svg => {
+            let SvgReading {
+                pattern,
+                fitting,
+                guesses,
+                losses,
+                notes,
+            } = read_svg(text(bytes)?, options)?;
+            Ok(Reading {
+                fitting,
+                guesses,
+                losses,
+                notes,
                 ..Reading::plain(pattern, format)
             })
         }

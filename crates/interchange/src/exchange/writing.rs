@@ -4,6 +4,7 @@ use super::contents::losses;
 use super::{Content, Format, Loss, WriteSource, Writing, Written};
 use crate::dxf::write_dxf;
 use crate::native::Fitting;
+use crate::svg::write_svg;
 use crate::{FormatError, write_document, write_garmentcode};
 
 /// Writes a pattern in a format.
@@ -40,6 +41,7 @@ pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, Format
             write_document(source.pattern, source.fitting)?,
             Vec::new(),
         )),
+        Format::Svg => Ok(one(write_svg(source)?, Vec::new())),
         Format::DxfAama | Format::DxfAstm => {
             let (text, mut further) = write_dxf(source, format == Format::DxfAstm)?;
             further.extend(fitting_lost(source.fitting));
