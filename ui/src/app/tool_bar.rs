@@ -13,10 +13,10 @@
 use super::ToileApp;
 use super::command::{UiCommand, shortcut_words};
 use super::tool_commands::{
-    ARC, ARC_ABOUT_CENTRE, BEND_EDGE, CIRCLE, CURVE, DART, DIVIDE_EDGE, FISHEYE_DART, FOLD, GRAIN,
+    ARC, ARC_ABOUT_CENTRE, BEND_EDGE, CIRCLE, COMPASS_ON_LINE, CURVE, DART, DIVIDE_EDGE, FISHEYE_DART, FOLD, GRAIN,
     INNER_LINE, LINE, MATCHED_NOTCHES, MEASURE, MIRROR, MIRROR_POINT, MOVE, NOTCH, PERPENDICULAR,
     PIVOT_DART, POINT, POINT_ALONG, POINT_FROM, POLYGON, RECTANGLE, SCALE, SEAM, SELECT, SPLIT,
-    SPREAD, TANGENT_ARC, TRACE, TURN, WALK_SEAM,
+    SPREAD, TANGENT_ARC, TRACE, TURN, TWO_COMPASSES, WALK_SEAM,
 };
 use super::tool_icons;
 use crate::theme::{self, Palette};
@@ -53,7 +53,14 @@ static GROUPS: &[(&str, &[&UiCommand])] = &[
     ),
     (
         "Points",
-        &[&POINT_FROM, &POINT_ALONG, &PERPENDICULAR, &MIRROR_POINT],
+        &[
+            &POINT_FROM,
+            &POINT_ALONG,
+            &PERPENDICULAR,
+            &MIRROR_POINT,
+            &COMPASS_ON_LINE,
+            &TWO_COMPASSES,
+        ],
     ),
     ("Alter", &[&MOVE, &TURN, &MIRROR, &SCALE, &MEASURE]),
     (
