@@ -62,8 +62,29 @@ pub fn convert(
         notes,
         found,
     } = Project::open_from(from, options.origin, &options.open)?;
-    let drafts = drafts(&project, format, options.sizes.as_ref())?;
-    let fitting = fitting_beside(&project, to).map_err(cannot("the pattern"))?;
+    let (files, losses) = write_project(&project, to, format, options.sizes.as_ref())?;
+    Ok(Converted {
+        files,
+        read: found,
+        notes,
+        format,
+        losses,
+    })
+}
+
+/// Writes the pattern of a project in a format; returns the files that were written, and contents that the
+/// format has no place for.
+///
+/// # Errors
+/// The output cannot be written; the garment has faults, and the format holds shapes.
+pub(crate) fn write_project(
+    project: &Project,
+    to: &Path,
+    format: Format,
+    sizes: Option<&SizeSelection>,
+) -> Result<(Vec<PathBuf>, Vec<Loss>), SessionError> {
+    let drafts = drafts(project, format, sizes)?;
+    let fitting = fitting_beside(project, to).map_err(cannot("the pattern"))?;
     let source = WriteSource {
         pattern: &project.pattern,
         fitting: &fitting,
@@ -82,17 +103,12 @@ pub fn convert(
     });
     let named: Vec<(String, &Vec<u8>)> = named.collect();
     write_all_atomically(folder, &named)?;
-    Ok(Converted {
-        files: named.iter().map(|(name, _)| folder.join(name)).collect(),
-        read: found,
-        notes,
-        format,
-        losses: writing.losses,
-    })
+    let files = named.iter().map(|(name, _)| folder.join(name));
+    Ok((files.collect(), writing.losses))
 }
 
 /// The format of an output: as asked for, else by its name.
-fn format_of(to: &Path, asked: Option<Format>) -> Result<Format, SessionError> {
+pub(crate) fn format_of(to: &Path, asked: Option<Format>) -> Result<Format, SessionError> {
     let remedy = format!(
         "patterns are written as {}; `toile nest --write` writes markers as svg, dxf, pdf and plt",
         Format::written_words()
