@@ -106,10 +106,6 @@ pub(super) fn step(
         (Event::Enter | Event::Tab, None) => {
             outcome.refusal = Some(nothing(reading.selection).to_owned());
         }
-        (Event::Escape, _) if !reading.selection.is_empty() => {
-            outcome.select = Some(Selection::default());
-            return (first, outcome);
-        }
         (Event::Escape, _) => outcome.done = true,
         _ => {}
     }

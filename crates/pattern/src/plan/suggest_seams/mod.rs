@@ -30,7 +30,7 @@ use sewn::sewn_partners;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Most edges of a draft for which seams are suggested: every pair of them is compared.
-pub const MAX_SUGGESTED_EDGES: usize = 3000;
+pub const MAX_SUGGESTED_EDGES: usize = 2000;
 /// Candidates that are kept for each edge.
 const MAX_CANDIDATES: usize = 16;
 /// Partners of each edge that are suggested.
@@ -60,7 +60,7 @@ pub fn suggest_seams(evaluation: &Evaluation) -> Result<SeamSuggestions, EditErr
         edges: &edges.all,
         places: &places,
         images: &images,
-        sides: &wearer_side::wearer_sides(&edges.all, &draft),
+        sides: &wearer_side::wearer_sides(&edges.all, &draft, &places),
         words: edges.all.iter().map(cost::words).collect(),
     };
     let partners = sewn_partners(&edges, &draft);

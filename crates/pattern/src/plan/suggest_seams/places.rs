@@ -102,6 +102,11 @@ impl Places {
         Some(Apart { far, cosine })
     }
 
+    /// Distance of the middle of an edge to the left of the wearer (m). `None`: the edge is not placed.
+    pub fn to_the_left(&self, edge: usize) -> Option<f64> {
+        Some(self.points[edge]?[1].x)
+    }
+
     /// Distance from the middle of an edge to the mirror image of the middle of another (m). `None`: they are
     /// not placed.
     pub fn from_image(&self, i: usize, j: usize) -> Option<f64> {

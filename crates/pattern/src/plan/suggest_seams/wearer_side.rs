@@ -1,6 +1,7 @@
 //! The side of the wearer that an edge is worn on: told by names, body parts, and places on fronts and backs.
 
 use super::edges::SeamEdge;
+use super::places::Places;
 use crate::{BodyPart, Draft, Facing, Worn};
 use std::collections::BTreeSet;
 
@@ -18,9 +19,11 @@ const SIDES: [[&str; 2]; 6] = [
 const FACINGS: [[&str; 2]; 3] = [["front", "back"], ["vorder", "rücken"], ["devant", "dos"]];
 /// Place across a front or back beyond which an edge belongs to one side of the wearer (1).
 const BESIDE: f64 = 0.3;
+/// Distance of a placed edge from the middle of the wearer up to which it is on neither side (m).
+const MIDDLE: f64 = 0.03;
 
 /// For each edge the side of the wearer: 1 left, -1 right, 0 unknown or in the middle (1).
-pub(super) fn wearer_sides(edges: &[SeamEdge], draft: &Draft) -> Vec<f64> {
+pub(super) fn wearer_sides(edges: &[SeamEdge], draft: &Draft, places: &Places) -> Vec<f64> {
     let names: BTreeSet<String> = draft.pieces.iter().map(|p| p.name.to_lowercase()).collect();
     let sides: Vec<[f64; 2]> = draft
         .pieces
@@ -36,16 +39,18 @@ pub(super) fn wearer_sides(edges: &[SeamEdge], draft: &Draft) -> Vec<f64> {
             [side, facing(&piece.worn, &name)]
         })
         .collect();
-    let of = |edge: &SeamEdge| {
+    let of = |(k, edge): (usize, &SeamEdge)| {
         let [side, facing] = sides[edge.piece];
+        let placed = places.to_the_left(k).unwrap_or(0.0);
         match () {
+            () if placed.abs() > MIDDLE => placed.signum(),
             () if side != 0.0 => side,
             // The wearer's left is at the right of a front as seen from outside, and at the left of a back.
             () if edge.across.abs() > BESIDE => facing * edge.across.signum(),
             () => 0.0,
         }
     };
-    edges.iter().map(of).collect()
+    edges.iter().enumerate().map(of).collect()
 }
 
 /// Side of the wearer on which a piece is worn (1).
