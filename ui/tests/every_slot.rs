@@ -77,6 +77,7 @@ fn may_take_tool(name: &str) -> bool {
         "Flip seam",
         "Select seam",
         "Walk seam",
+        "Suggested seams",
     ];
     let command = toile_ui::named(name).unwrap();
     matches!(command.menu, Draw | Panel | Sew) && !others.contains(&name)

@@ -22,6 +22,7 @@ use crate::body_options::{BodyOptions, StanceOptions};
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
 use crate::read_options::ReadArguments;
+use crate::seams_arguments::Seams;
 use crate::values::{blend, direction, export_format, one_size, panel_origin, share, sizes, word};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -87,6 +88,10 @@ pub enum Task {
     /// Writes the panel as a pattern (NAME.toile.json), and beside it NAME-flatten.json (SI units) and NAME-strain.png
     /// (stretch in %).
     Flatten(Flatten),
+    /// Suggest seams for edges that have none, from lengths, angles, shapes, names, notches and places of the pieces.
+    ///
+    /// Nothing is sewn unasked: the list is by rank, and --accept sews and writes the pattern.
+    Seams(Seams),
     /// Convert a pattern between formats; lists what could not be carried over.
     Convert(Convert),
     /// Do many jobs, each in a process of its own with limits of time and memory: every pattern in every size, fabric

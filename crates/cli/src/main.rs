@@ -19,6 +19,8 @@ mod output;
 mod print_arguments;
 mod print_commands;
 mod read_options;
+mod seams_arguments;
+mod seams_command;
 mod session_commands;
 mod tool_commands;
 mod values;
@@ -63,6 +65,7 @@ fn run(task: Task, output: &Output) -> Result<Made, Failure> {
         Task::Job(job) => return batch_commands::job(&job, output),
         Task::Replay(replay) => return session_commands::replay(&replay, output),
         Task::Convert(convert) => convert_command::convert(&convert, output),
+        Task::Seams(seams) => seams_command::seams(&seams, output),
         Task::Flatten(flatten) => flatten_command::flatten(&flatten, output),
         Task::Mesh(mesh) => tool_commands::mesh(&mesh, output),
         Task::Print(print) => print_commands::print(&print, output),

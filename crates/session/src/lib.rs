@@ -78,6 +78,7 @@ mod state_picture;
 mod stored_marker;
 mod stuck;
 mod study;
+mod suggested_seams;
 mod timing;
 mod tools;
 mod verdict;
@@ -135,6 +136,10 @@ pub use setup::{GarmentJob, JobPanel, JobSeam};
 pub use sizes::SizedDiagnostic;
 pub use stored_marker::{MarkerJob, nest_marker};
 pub use study::{RuleCost, rule_table, study_rules};
+pub use suggested_seams::{
+    AcceptedSeams, EdgeOfPiece, PairOfEdges, SeamOptions, SuggestedSeamsReport, Suggestion,
+    suggested_seams,
+};
 pub use timing::cpu_seconds;
 pub use toile_assembly::Garment;
 pub use toile_body::{

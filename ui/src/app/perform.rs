@@ -68,7 +68,7 @@ impl ToileApp {
         match self.view.tool {
             Tool::Select if shows_some && !self.has_selection() => self.isolate(),
             Tool::Select => self.give(&Event::Escape),
-            Tool::Slots(_) | Tool::Walk => self.take(Tool::Select),
+            Tool::Slots(_) | Tool::Walk | Tool::Suggested => self.take(Tool::Select),
         }
     }
 

@@ -16,7 +16,8 @@ use super::tool_commands::{
     ARC, ARC_ABOUT_CENTRE, BEND_EDGE, CIRCLE, COMPASS_ON_LINE, CURVE, DART, DIVIDE_EDGE,
     FISHEYE_DART, FOLD, GRAIN, INNER_LINE, LINE, MATCHED_NOTCHES, MEASURE, MIRROR, MIRROR_POINT,
     MOVE, NOTCH, PERPENDICULAR, PIVOT_DART, POINT, POINT_ALONG, POINT_FROM, POLYGON, RECTANGLE,
-    SCALE, SEAM, SELECT, SPLIT, SPREAD, TANGENT_ARC, TRACE, TURN, TWO_COMPASSES, WALK_SEAM,
+    SCALE, SEAM, SELECT, SPLIT, SPREAD, SUGGESTED_SEAMS, TANGENT_ARC, TRACE, TURN, TWO_COMPASSES,
+    WALK_SEAM,
 };
 use super::tool_icons;
 use crate::theme::{self, Palette};
@@ -77,7 +78,10 @@ static GROUPS: &[(&str, &[&UiCommand])] = &[
         ],
     ),
     ("Dart", &[&DART, &FISHEYE_DART, &PIVOT_DART, &SPREAD]),
-    ("Sew", &[&SEAM, &MATCHED_NOTCHES, &WALK_SEAM]),
+    (
+        "Sew",
+        &[&SEAM, &SUGGESTED_SEAMS, &MATCHED_NOTCHES, &WALK_SEAM],
+    ),
 ];
 
 /// Names of the commands of all buttons.
@@ -161,6 +165,7 @@ impl ToileApp {
             Tool::Select => SELECT.name,
             Tool::Slots(tool) => tool.command,
             Tool::Walk => WALK_SEAM.name,
+            Tool::Suggested => SUGGESTED_SEAMS.name,
         }
     }
 }

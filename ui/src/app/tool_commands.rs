@@ -359,6 +359,14 @@ commands! {
         ToileApp::has_panels,
         |app| app.take(Tool::Slots(&seam::SEAM)),
     );
+    SUGGESTED_SEAMS = command(
+        Menu::Sew,
+        "Suggested seams",
+        key(SHIFT, Key::U),
+        "Show which edges that are not sewn may belong together, and sew those that are accepted",
+        ToileApp::has_panels,
+        |app| app.take(Tool::Suggested),
+    );
     MATCHED_NOTCHES = command(
         Menu::Sew,
         "Matched notches",

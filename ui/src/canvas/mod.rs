@@ -42,6 +42,7 @@ pub mod seams;
 pub mod selection;
 pub mod sheet_tag;
 pub mod snap;
+pub mod suggested;
 pub mod table_layout;
 pub mod walked;
 

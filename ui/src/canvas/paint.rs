@@ -532,9 +532,11 @@ impl Picture<'_> {
                 self.label(at + vec2(12.0, -18.0 * lines), words, self.palette.fault);
             }
             Overlay::Words(..) | Overlay::Label(..) => {}
-            Overlay::Ghost(..) | Overlay::Stroke(..) | Overlay::Pip(..) | Overlay::Touch(_) => {
-                self.on_table(mark);
-            }
+            Overlay::Ghost(..)
+            | Overlay::Stroke(..)
+            | Overlay::Thread(..)
+            | Overlay::Pip(..)
+            | Overlay::Touch(_) => self.on_table(mark),
             Overlay::Box(corners) => {
                 let [a, b] = corners.map(|at| self.seen(Vec2::zeros(), at));
                 let rect = Rect::from_two_pos(a, b);

@@ -43,6 +43,12 @@ impl Picture<'_> {
                 let stroke = Stroke::new(2.6, self.toned(*tone));
                 self.painter.line(self.line(table, line), stroke);
             }
+            Overlay::Thread(line, tone) => {
+                let stroke = Stroke::new(1.8, self.toned(*tone));
+                let line = self.line(table, line);
+                self.painter
+                    .extend(Shape::dashed_line(&line, stroke, 6.0, 4.0));
+            }
             Overlay::Pip(at, tone) => {
                 let at = self.seen(table, *at);
                 let reach = 5.0;

@@ -4,6 +4,7 @@
 use super::allowance::CutLines;
 use super::panel_shape::PanelShape;
 use super::seams::{SeamDrawing, draw_seams};
+use super::suggested::{Suggested, SuggestedLast};
 use super::walked::{WalkedLast, WalkedSeam};
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
@@ -46,6 +47,8 @@ pub struct Scene {
     made: u64,
     /// Cache of the walked seam; clones of the scene share it.
     walked: Rc<WalkedLast>,
+    /// Cache of the suggested seams; clones of the scene share it.
+    suggested: Rc<SuggestedLast>,
 }
 
 /// A polyline, with the path it was made from. The path is kept alive so that its address identifies it.
@@ -226,6 +229,11 @@ impl Scene {
     /// A seam, measured and flattened for walking; `None` if it cannot be walked.
     pub fn walked(&self, seam: SeamId) -> Option<Arc<WalkedSeam>> {
         self.walked.seam(&self.draft, seam)
+    }
+
+    /// Seams suggested for the edges that are not sewn, of the pattern that the scene shows.
+    pub fn suggested(&self, evaluation: &Evaluation) -> Arc<Suggested> {
+        self.suggested.seams(&self.draft, evaluation)
     }
 
     /// The level of detail that the scene is drawn for.

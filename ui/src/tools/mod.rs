@@ -7,6 +7,7 @@
 //!   a sheet;
 //! - [`crate::tools::panel`], [`crate::tools::alter`], [`crate::tools::parts`], [`crate::tools::seam`]: work
 //!   on panels, alter them, move parts, sew;
+//! - [`crate::tools::suggested`]: suggested seams shown and accepted;
 //! - [`crate::tools::select`] (`drag`), [`crate::tools::rounding::rounded_place`], [`crate::tools::walk`]:
 //!   drags, and the round numbers they keep to; a seam walked;
 //! - [`crate::app::ToileApp::follow_outcome`] (`perform.rs`), [`toile_session::Session::preview`]
@@ -41,6 +42,7 @@ pub(crate) mod select;
 mod slot_overlay;
 mod slot_steps;
 pub mod slots;
+mod suggested;
 mod tangent;
 mod toward;
 pub mod typing;
@@ -50,6 +52,7 @@ pub use along::{corner_words, is_on_fold, scaled};
 pub use finished::finished_words;
 pub use planning::Planning;
 pub use select::SelectState;
+pub use suggested::SuggestedState;
 pub use walk::WalkState;
 
 use crate::canvas::fill::Fill;
@@ -184,6 +187,8 @@ pub enum Overlay {
     Ghost(Vec<Vec<Vec2>>, Fill),
     /// A line on the table.
     Stroke(Vec<Vec2>, Tone),
+    /// A dashed line on the table.
+    Thread(Vec<Vec2>, Tone),
     /// A mark on a line of the table.
     Pip(Vec2, Tone),
     /// Point on the table where two pieces touch.
@@ -245,6 +250,8 @@ pub enum Tool {
     Slots(&'static SlotTool),
     /// Walks the selected seam.
     Walk,
+    /// Shows suggested seams, and sews those that are accepted.
+    Suggested,
 }
 
 /// State of a tool.
@@ -256,6 +263,8 @@ pub enum State {
     Slots(Box<SlotState>),
     /// State of [`Tool::Walk`].
     Walk(WalkState),
+    /// State of [`Tool::Suggested`].
+    Suggested(SuggestedState),
 }
 
 impl Default for State {
@@ -271,6 +280,7 @@ impl Tool {
             Self::Select => State::default(),
             Self::Slots(_) => State::Slots(Box::default()),
             Self::Walk => State::Walk(WalkState::default()),
+            Self::Suggested => State::Suggested(SuggestedState::default()),
         }
     }
 
@@ -289,6 +299,10 @@ impl Tool {
                 let (state, outcome) = walk::step(state, event, reading);
                 (State::Walk(state), outcome)
             }
+            (Self::Suggested, State::Suggested(state)) => {
+                let (state, outcome) = suggested::step(*state, event, reading);
+                (State::Suggested(state), outcome)
+            }
             // The state belongs to another tool: this tool starts anew.
             _ => self.step(&self.begin(), event, reading),
         }
@@ -300,6 +314,7 @@ impl Tool {
             (Self::Select, State::Select(state)) => select::overlay(state, reading),
             (Self::Slots(tool), State::Slots(state)) => slot_overlay::overlay(tool, state, reading),
             (Self::Walk, State::Walk(state)) => walk::overlay(state, reading),
+            (Self::Suggested, State::Suggested(state)) => suggested::overlay(*state, reading),
             _ => Vec::new(),
         }
     }
@@ -310,6 +325,7 @@ impl Tool {
             (Self::Select, State::Select(state)) => select::hint(state, reading),
             (Self::Slots(tool), State::Slots(state)) => slot_overlay::hint(tool, state, reading),
             (Self::Walk, State::Walk(state)) => walk::hint(state, reading),
+            (Self::Suggested, State::Suggested(state)) => suggested::hint(*state, reading),
             _ => String::new(),
         }
     }
@@ -320,6 +336,7 @@ impl Tool {
             State::Select(state) => *state != SelectState::default(),
             State::Slots(state) => !state.is_empty(),
             State::Walk(state) => state.is_typing(),
+            State::Suggested(_) => false,
         }
     }
 

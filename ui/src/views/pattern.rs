@@ -381,7 +381,7 @@ impl PatternView {
         match &self.state {
             State::Slots(state) => state.is_typing(),
             State::Walk(state) => state.is_typing(),
-            State::Select(_) => false,
+            State::Select(_) | State::Suggested(_) => false,
         }
     }
 
@@ -401,7 +401,7 @@ impl PatternView {
         self.add_guide_hit(&mut found, table);
         let begun = match &self.state {
             State::Slots(state) => state.sheet(),
-            State::Select(_) | State::Walk(_) => None,
+            State::Select(_) | State::Walk(_) | State::Suggested(_) => None,
         };
         // While the current sheet lies on a panel, the pointer over that panel draws on it.
         let is_on = |id: &SheetId| {
@@ -435,7 +435,7 @@ impl PatternView {
         let overlay = self.overlay(evaluation);
         let hover = match self.tool {
             Tool::Select => self.hover.map(|hit| hit.item),
-            Tool::Slots(_) | Tool::Walk => None,
+            Tool::Slots(_) | Tool::Walk | Tool::Suggested => None,
         };
         let known = |seam: &&crate::canvas::seams::SeamDrawing| {
             self.base.seams.iter().all(|old| old.id != seam.id)

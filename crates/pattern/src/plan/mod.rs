@@ -10,6 +10,7 @@
 //! - [`crate::plan::operations`], [`crate::plan::reshape`], [`crate::plan::split`]: operations put on panels;
 //! - [`crate::plan::seam`], [`crate::plan::notch`], [`crate::plan::matched`], [`crate::plan::on_stage`],
 //!   [`crate::plan::along`]: seams and notches; edges as they are finished, distances along them;
+//! - [`crate::plan::suggest_seams`](mod@crate::plan::suggest_seams): partners of edges that are not sewn;
 //! - [`crate::plan::fragment`], [`crate::plan::paste`](mod@crate::plan::paste), [`crate::plan::names`]: parts
 //!   copied and pasted, with free names;
 //! - [`crate::plan::divide`], [`crate::plan::rename`](mod@crate::plan::rename), [`crate::plan::remove`]:
@@ -55,6 +56,7 @@ mod seam;
 mod select;
 mod sizes;
 mod split;
+mod suggest_seams;
 mod swept;
 mod trace;
 mod transform;
@@ -103,6 +105,9 @@ pub use sizes::{
     add_size, add_variable, remove_size, rename_pattern, set_base_size, set_measurement, set_unit,
 };
 pub use split::{Joined, SplitPanel, SplitWish, split_panel};
+pub use suggest_seams::{
+    MAX_SUGGESTED_EDGES, SeamSuggestions, SuggestedPair, SuggestedSeam, accept_seams, suggest_seams,
+};
 pub use swept::{angle_of, bulge_of};
 pub use trace::{Holes, NewPanel, add_line, remove_line, trace_face, trace_panel};
 pub use transform::{Affine, Moved, move_points, transform_points};

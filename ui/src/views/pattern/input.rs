@@ -197,7 +197,7 @@ impl PatternView {
         }
         let icon = match (self.tool, self.hover.map(|hit| hit.item)) {
             _ if panning => CursorIcon::Grab,
-            (Tool::Slots(_) | Tool::Walk, _) => CursorIcon::Crosshair,
+            (Tool::Slots(_) | Tool::Walk | Tool::Suggested, _) => CursorIcon::Crosshair,
             (_, Some(Item::Point(_) | Item::Panel(_) | Item::Sheet(_))) => CursorIcon::Move,
             (_, Some(Item::Guide(id))) => self.guide_cursor(id),
             (_, Some(_)) => CursorIcon::PointingHand,
