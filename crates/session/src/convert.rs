@@ -62,8 +62,42 @@ pub fn convert(
         notes,
         found,
     } = Project::open_from(from, options.origin, &options.open)?;
-    let drafts = drafts(&project, format, options.sizes.as_ref())?;
-    let fitting = fitting_beside(&project, to).map_err(cannot("the pattern"))?;
+    let WrittenPattern { files, losses, .. } =
+        write_project(&project, to, (Some(format), options.sizes.as_ref()))?;
+    Ok(Converted {
+        files,
+        read: found,
+        notes,
+        format,
+        losses,
+    })
+}
+
+/// A pattern that was written.
+#[derive(Clone, Debug)]
+pub struct WrittenPattern {
+    /// Files that were written, the pattern first.
+    pub files: Vec<PathBuf>,
+    /// Format of the files.
+    pub format: Format,
+    /// Contents that the format has no place for.
+    pub losses: Vec<Loss>,
+}
+
+/// Writes a project in a format, else in the one that the file's name ends in; in sizes where the format
+/// holds shapes.
+///
+/// # Errors
+/// A name of no format, or of another one than asked for; sizes that the format does not hold; the garment has
+/// faults, and the format holds shapes; a file cannot be written.
+pub fn write_project(
+    project: &Project,
+    to: &Path,
+    (format, sizes): (Option<Format>, Option<&SizeSelection>),
+) -> Result<WrittenPattern, SessionError> {
+    let format = format_of(to, format)?;
+    let drafts = drafts(project, format, sizes)?;
+    let fitting = fitting_beside(project, to).map_err(cannot("the pattern"))?;
     let source = WriteSource {
         pattern: &project.pattern,
         fitting: &fitting,
@@ -82,10 +116,8 @@ pub fn convert(
     });
     let named: Vec<(String, &Vec<u8>)> = named.collect();
     write_all_atomically(folder, &named)?;
-    Ok(Converted {
+    Ok(WrittenPattern {
         files: named.iter().map(|(name, _)| folder.join(name)).collect(),
-        read: found,
-        notes,
         format,
         losses: writing.losses,
     })
