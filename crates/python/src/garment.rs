@@ -99,7 +99,13 @@ impl Garment {
     /// Vertices of the garment as array (n, 3) of float64 (metres); the body stands on y = 0 and faces +z.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows(py, self.mesh.positions.iter().map(|&place| place.into()))
+        rows(
+            py,
+            self.mesh
+                .positions
+                .iter()
+                .map(|&place| <[f64; 3]>::from(place)),
+        )
     }
 
     /// Triangles as array (m, 3) of uint32: indices of vertices, counter-clockwise seen from the right side of the
@@ -112,14 +118,26 @@ impl Garment {
     /// Unit normals of the vertices as array (n, 3) of float64.
     #[getter]
     fn normals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows(py, self.mesh.normals.iter().map(|&normal| normal.into()))
+        rows(
+            py,
+            self.mesh
+                .normals
+                .iter()
+                .map(|&normal| <[f64; 3]>::from(normal)),
+        )
     }
 
     /// Places in the planes of the pieces as array (k, 2) of float64 (metres): the texture coordinates. A vertex on a
     /// seam has one on each side of it, so that k is larger than n.
     #[getter]
     fn uv<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        rows(py, self.mesh.texture.iter().map(|&place| place.into()))
+        rows(
+            py,
+            self.mesh
+                .texture
+                .iter()
+                .map(|&place| <[f64; 2]>::from(place)),
+        )
     }
 
     /// Corners of the triangles in the pieces as array (m, 3) of uint32: indices of rows of uv.

@@ -6,7 +6,7 @@ use crate::pattern::{Pattern, finite};
 use crate::progress::{detached, watched};
 use numpy::PyArray2;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyBytes, PyTuple};
 use std::path::PathBuf;
 use toile_session::{
     Budget, ClothSettings, LaidPatterns, MarkerFormat, MarkerSummary, NestOptions, Project,

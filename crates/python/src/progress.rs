@@ -28,7 +28,10 @@ impl Teller {
                 return Ok(true);
             };
             let answer = tell.call1(py, (stage, share, words))?;
-            Ok(!answer.bind(py).is(&*PyBool::new(py, false)))
+            Ok(!answer
+                .bind(py)
+                .cast::<PyBool>()
+                .is_ok_and(|answer| !answer.is_true()))
         })
     }
 }

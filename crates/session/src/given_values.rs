@@ -5,7 +5,7 @@ use std::sync::Arc;
 use toile_measure::{CATALOGUE, Measurements, Origin, definition};
 use toile_pattern::fields::NumberAddress;
 use toile_pattern::plan::set_number;
-use toile_pattern::{Evaluation, Number, nearest};
+use toile_pattern::{Evaluation, Formula, FormulaError, Number, nearest};
 
 impl Project {
     /// The variables of the pattern in its order, each with its value for the project's wearer (m), (m2), (rad) or
@@ -48,14 +48,20 @@ impl Project {
         }
         let evaluation = Evaluation::new(pattern, self.drafted_to());
         let power = evaluation.variable(own.id).map_or(0, |found| found.1);
-        let number = match power {
-            0 if evaluation.is_angle(own.id) => Number::Formula(format!("{value}rad")),
-            0 => Number::Value(value),
-            // A length has its unit in its formula.
-            power => Number::Formula(format!(
-                "{value}m{}",
-                " * 1m".repeat(usize::from(power.unsigned_abs()) - 1)
-            )),
+        // A length or an angle has its unit in a formula.
+        let unit = match power {
+            0 if evaluation.is_angle(own.id) => "rad".to_owned(),
+            0 => String::new(),
+            power => format!("m{}", " * 1m".repeat(usize::from(power.unsigned_abs()) - 1)),
+        };
+        let number = match unit.is_empty() {
+            true => Number::Value(value),
+            false => {
+                let text = format!("{value}{unit}");
+                let formula = Formula::of_measurements(&text);
+                let why = |error: FormulaError| SessionError::Conflict(format!("{text}: {error}"));
+                Number::Formula(formula.map_err(why)?)
+            }
         };
         let place = NumberAddress::new(own.id, "value");
         Ok(self.edited(&set_number(&evaluation, &place, number)?)?)
@@ -130,11 +136,13 @@ mod tests {
     fn with_variables(texts: &[(&str, &str)]) -> Project {
         let mut pattern = toile_pattern::Pattern::blank("skirt");
         for (name, formula) in texts {
+            let known = Evaluation::new(&pattern, &Measurements::new());
+            let formula = Formula::parse(formula, known.names()).unwrap();
             let id = pattern.ids.take();
             pattern.variables.push(Arc::new(Variable {
                 id,
                 name: (*name).to_owned(),
-                number: Number::Formula((*formula).to_owned()),
+                number: Number::Formula(formula),
             }));
         }
         Project {

@@ -206,7 +206,11 @@ fn the_python_module_is_built_of_the_same_versions() {
     let (whole, own) = (locked("Cargo.lock"), locked("crates/python/Cargo.lock"));
     let other: Vec<_> = own
         .iter()
-        .filter(|(name, versions)| whole.get(*name).is_some_and(|known| !versions.is_subset(known)))
+        .filter(|(name, versions)| {
+            whole
+                .get(*name)
+                .is_some_and(|known| !versions.is_subset(known))
+        })
         .collect();
     assert!(
         other.is_empty(),
