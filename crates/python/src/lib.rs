@@ -19,7 +19,7 @@ mod progress;
 ///
 /// Errors are of class Error. Functions that work long take progress=f and call f(stage, share, words); an exception
 /// in f stops them and is raised. They let other threads run.
-#[pyo3::pymodule]
+#[pyo3::pymodule(name = "_toile")]
 mod toile {
     use pyo3::prelude::*;
 

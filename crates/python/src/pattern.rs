@@ -60,7 +60,7 @@ impl Pattern {
         self.project.pattern.name.clone()
     }
 
-    /// Word of the format that it was read from, as "native" or "dxf-aama"; None if it was not read.
+    /// Word of the format that it was read from, as "native" or "dxf-aama" (text); None if it was not read.
     #[getter]
     fn format(&self) -> Option<&'static str> {
         self.found.as_ref().map(|found| found.format.word())
@@ -338,7 +338,7 @@ pub enum Source {
 ///
 /// path: the file. format: word of the format, in place of the one that the file's name ends in: native,
 /// garmentcode, dxf-aama, dxf-astm, ... sizes: name of a size or several, for formats that hold shapes; default:
-/// Pattern.size. A DXF of several sizes has a rule table (.rul) beside it.
+/// Pattern.size. A format of several files has the others beside the first, under its name.
 #[pyfunction]
 #[pyo3(signature = (pattern, path, *, format = None, sizes = None))]
 pub fn write(

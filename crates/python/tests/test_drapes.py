@@ -117,7 +117,7 @@ def test_surfaces_that_are_no_disk_are_refused():
         ((places, triangles - 1), "from 0 to"),
         ((places[:, :2], triangles), "three"),
         ((np.full_like(places, np.nan), triangles), "finite|number"),
-        ((np.eye(3), [[0, 1, 2], [0, 2, 1]]), ""),
+        ((np.eye(3), [[0, 1, 2], [0, 2, 1]]), "; "),
     ]:
         with pytest.raises(toile.Error, match=words):
             toile.flatten(*wrong)

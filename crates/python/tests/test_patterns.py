@@ -79,8 +79,8 @@ def test_a_wrong_file_says_where_and_what_to_do(tmp_path):
 
 def test_faults_of_a_pattern_are_listed(patterns):
     text = (patterns / "t-shirt.toile.json").read_text()
-    assert "bust" in text
-    broken = toile.read(text.replace("bust", "unheard_of").encode())
+    assert text.count('"neck_half * 0.85"') == 1
+    broken = toile.read(text.replace('"neck_half * 0.85"', '"unheard_of * 0.85"').encode())
     found = broken.check()
     assert any(one.severity == "error" for one in found)
     assert all(one.message and one.place for one in found)
@@ -105,7 +105,7 @@ def test_a_sound_pattern_has_no_errors_in_any_size(shirt):
 def test_what_a_format_cannot_carry_is_returned(shirt, tmp_path):
     path = tmp_path / "shirt.dxf"
     losses = toile.write(shirt, path, format="dxf-astm", sizes=shirt.sizes)
-    assert path.exists() and (tmp_path / "shirt.rul").exists()
+    assert path.exists()
     assert any(loss.what == "seams" and loss.count > 0 for loss in losses)
     back = toile.read(path, unit="mm")
     assert len(back.panels) > 0 and back.format.startswith("dxf")

@@ -11,8 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 import toile
 
-#: Evaluations of a search that takes minutes.
-FOREVER = 100_000_000
+#: A search that takes minutes.
+LONG = {"sizes": {"M": 8}, "evaluations": 10_000_000_000}
 
 
 class Enough(Exception):
@@ -42,7 +42,7 @@ def test_what_progress_raises_stops_the_work_within_a_second_and_is_raised(work,
         if work == "drape":
             toile.drape(poncho, quality="preview", progress=stop)
         else:
-            toile.nest(shirt, evaluations=FOREVER, progress=stop)
+            toile.nest(shirt, **LONG, progress=stop)
     assert caught.value is raised[0]
     assert time.monotonic() - raised[1][0] < 1.0 and len(raised[1]) == 1
 
@@ -63,7 +63,7 @@ def test_ctrl_c_stops_a_search_within_a_second(shirt, progress):
 
     threading.Thread(target=press).start()
     with pytest.raises(KeyboardInterrupt):
-        toile.nest(shirt, evaluations=FOREVER, progress=progress)
+        toile.nest(shirt, **LONG, progress=progress)
     assert time.monotonic() - sent[0] < 1.0
 
 
@@ -89,7 +89,7 @@ import sys, time, toile
 from concurrent.futures import ThreadPoolExecutor
 pattern = toile.read(sys.argv[1])
 def work(seed):
-    return toile.nest(pattern, evaluations=40_000, seed=seed, threads=1)
+    return toile.nest(pattern, sizes={"M": 8}, evaluations=20_000_000, seed=seed, threads=1)
 with ThreadPoolExecutor(4) as pool:
     wall, busy = time.monotonic(), time.process_time()
     list(pool.map(work, range(4)))

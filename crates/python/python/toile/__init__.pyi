@@ -7,6 +7,34 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "Body",
+    "Cancelled",
+    "Diagnostic",
+    "Draft",
+    "Edge",
+    "Error",
+    "Flat",
+    "FormatError",
+    "Garment",
+    "Guess",
+    "Loss",
+    "Marker",
+    "Nest",
+    "Notch",
+    "Pattern",
+    "PatternError",
+    "Piece",
+    "Seam",
+    "body",
+    "drape",
+    "flatten",
+    "nest",
+    "read",
+    "write",
+    "__version__",
+]
+
 __version__: str
 
 _Path: TypeAlias = str | PathLike[str]
