@@ -7,7 +7,8 @@ import toile
 pattern = toile.read(sys.argv[1])
 for guess in pattern.guesses:
     print("guessed:", guess)
-for size in pattern.sizes or [None]:
+sizes: list[str | None] = [*pattern.sizes] or [None]
+for size in sizes:
     draft = pattern.draft(size=size)
     cloth = sum(piece.area for piece in draft.pieces)  # m2
     outline = draft.pieces[0].outline(tolerance=1e-4)  # (n, 2), metres
