@@ -126,6 +126,9 @@ pub enum Quality {
 }
 
 impl Quality {
+    /// All qualities, the coarsest first.
+    pub const ALL: [Self; 3] = [Self::Preview, Self::Fit, Self::Final];
+
     /// Mean edge length of the mesh (m).
     pub fn edge_length(self) -> f64 {
         match self {
@@ -164,8 +167,7 @@ impl Quality {
 
     /// Finds a quality by its name on the command line.
     pub fn named(name: &str) -> Option<Self> {
-        let all = [Self::Preview, Self::Fit, Self::Final];
-        all.into_iter().find(|quality| quality.name() == name)
+        Self::ALL.into_iter().find(|quality| quality.name() == name)
     }
 
     /// The name on the command line.

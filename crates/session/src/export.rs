@@ -93,10 +93,31 @@ impl Session {
         export: &Export,
         watcher: &mut dyn Watcher,
     ) -> Result<Vec<Event>, SessionError> {
-        let start = Instant::now();
         // Checked before minutes are spent on the drape.
         export.check_marker()?;
         check_folder(&export.dir)?;
+        let (mut events, files) = self.export_files(export, watcher)?;
+        write_all_atomically(&export.dir, &files)?;
+        // The files are on the disk: a request to stop comes too late and is ignored.
+        let _ = report_progress(watcher, "writing", 1.0, "");
+        let paths = files.iter().map(|(name, _)| export.dir.join(name));
+        events.push(Event::FilesWritten {
+            paths: paths.collect(),
+        });
+        Ok(events)
+    }
+
+    /// The files of an export, each with its name and content; nothing is written.
+    ///
+    /// # Errors
+    /// The garment or a marker cannot be made, or a format cannot hold it.
+    pub fn export_files(
+        &mut self,
+        export: &Export,
+        watcher: &mut dyn Watcher,
+    ) -> Result<(Vec<Event>, Vec<File>), SessionError> {
+        let start = Instant::now();
+        export.check_marker()?;
         let mut events = Vec::new();
         let subject = self.subject(export, (watcher, &mut events))?;
         let mut files = Vec::new();
@@ -115,14 +136,7 @@ impl Session {
                 });
             }
         }
-        write_all_atomically(&export.dir, &files)?;
-        // The files are on the disk: a request to stop comes too late and is ignored.
-        let _ = report_progress(watcher, "writing", 1.0, "");
-        let paths = files.iter().map(|(name, _)| export.dir.join(name));
-        events.push(Event::FilesWritten {
-            paths: paths.collect(),
-        });
-        Ok(events)
+        Ok((events, files))
     }
 
     /// Makes the markers and the drape that the export needs.

@@ -5,7 +5,7 @@ use crate::bodies::mannequin_of;
 use crate::event::FoundInFile;
 use crate::fabrics::{fabric_of_file, is_known_fabric};
 use crate::input::{is_input, is_pipe};
-use crate::open::{OpenedPattern, is_sample, open_pattern_from};
+use crate::open::{OpenedPattern, is_sample, open_pattern_from, opened_from};
 use crate::paths::{relative, resolved};
 use crate::placed_panels::PanelOrigin;
 use crate::{BodyChoice, FabricChoice, OpenOptions, Project, SessionError, WornGarment};
@@ -15,8 +15,13 @@ use toile_interchange::{
     Fitting, FittingFabric, FittingLayer, FittingWearer, FormatError, write_document,
 };
 
+/// Name of a pattern that is in no file, in errors.
+const UNNAMED: &str = "pattern";
+
 /// A pattern file opened as a project.
-pub(crate) struct OpenedProject {
+#[derive(Clone, Debug)]
+pub struct OpenedProject {
+    /// The project.
     pub project: Project,
     /// Notes on contents that were left out, taken for granted or are missing.
     pub notes: Vec<String>,
@@ -36,15 +41,35 @@ impl Project {
     }
 
     /// Opens a pattern file as options say, with its panels placed round an origin.
-    pub(crate) fn open_from(
+    ///
+    /// # Errors
+    /// Those of [`Project::open`]; an option that the format has no use for.
+    pub fn open_from(
         path: &Path,
         origin: PanelOrigin,
         options: &OpenOptions,
     ) -> Result<OpenedProject, SessionError> {
+        let opened = open_pattern_from(path, origin, options)?;
+        Ok(Self::of_opened(opened, Some(path), origin))
+    }
+
+    /// Opens a pattern that is in no file from its bytes, as options say. Files that it names are looked for in
+    /// the working folder.
+    ///
+    /// # Errors
+    /// Those of [`Project::open_from`].
+    pub fn open_bytes(bytes: &[u8], options: &OpenOptions) -> Result<OpenedProject, SessionError> {
+        let origin = PanelOrigin::Automatic;
+        let named = (Path::new(UNNAMED), bytes);
+        let opened = opened_from(named, options.with.clone(), (origin, &options.reading))?;
+        Ok(Self::of_opened(opened, None, origin))
+    }
+
+    fn of_opened(opened: OpenedPattern, path: Option<&Path>, origin: PanelOrigin) -> OpenedProject {
         let OpenedPattern {
             reading: opened,
             companions,
-        } = open_pattern_from(path, origin, options)?;
+        } = opened;
         let mut notes = opened.words();
         let found = FoundInFile {
             format: opened.format,
@@ -54,15 +79,15 @@ impl Project {
         };
         let mut project = Self {
             pattern: Arc::new(opened.pattern),
-            source: Some(path.to_owned()),
+            source: path.map(Path::to_owned),
             ..Self::default()
         };
         notes.extend(try_on(&mut project, opened.fitting, origin));
-        Ok(OpenedProject {
+        OpenedProject {
             project,
             notes,
             found,
-        })
+        }
     }
 }
 

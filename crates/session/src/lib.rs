@@ -16,6 +16,7 @@ mod crossings;
 mod crumple;
 mod derived;
 mod digest;
+mod drafted;
 mod drape;
 mod dressed_figure;
 mod error;
@@ -31,6 +32,7 @@ mod frame_counts;
 mod frames_export;
 mod garment_edit;
 mod gesture;
+mod given_values;
 mod history;
 mod input;
 mod interactive_run;
@@ -95,12 +97,14 @@ pub use bodies::{edit_body, open_body_edits, proportions_named, proportions_of_h
 pub use choice::{BodyChoice, Quality, figure_named};
 pub use command::{Command, OtherGarment};
 pub use convert::{ConvertOptions, Converted, convert};
+pub use drafted::{DraftedEdge, DraftedNotch, DraftedPattern, DraftedPiece, DraftedSeam};
 pub use drape::DrapeResult;
 pub use error::SessionError;
 pub use event::{Assembled, Draped, Event, FoundInFile};
 pub use export_format::{Export, ExportFormat};
 pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
-pub use flattening::{DartReport, FlattenOptions, FlattenReport, flatten_mesh};
+pub use fitting::OpenedProject;
+pub use flattening::{DartReport, FlatSurface, FlattenOptions, FlattenReport, flatten_mesh};
 pub use frames_export::{FramesExport, FramesOutcome, export_frames};
 pub use garment_edit::{CannotFollow, GarmentEdit};
 pub use history::HistoryStep;
@@ -112,12 +116,16 @@ pub use live::{LiveFrame, LiveRun};
 pub use log::{is_logging, start_log};
 pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use markers::{FoundMarker, MarkerSearch, kept_words, other_sizes_words};
-pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
+pub use nest_patterns::{
+    LaidCopy, LaidPatterns, is_nesting_instance, lay_projects, nest_instance, nest_patterns,
+    open_marker_settings,
+};
 pub use open::{
     FileUse, OpenOptions, SAMPLE, SAMPLES, file_use, open_mannequin, open_marker,
     open_measurements, open_pattern, read_input, read_pattern_text,
 };
 pub use outfit::GarmentPart;
+pub use output::File;
 pub use piece_facts::{
     DartFacts, EdgeFacts, JointFacts, NotchFacts, PieceFacts, RegionFacts, SeamFacts, piece_facts,
     seam_facts,
@@ -148,22 +156,23 @@ pub use toile_body::{
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::{Aspect, Finding, Stage, Verdict};
 pub use toile_interchange::{
-    ExpectedKind, Format, Guess, Lines, Loss, MarkerSettings, Paper, ReadOption, ReadOptions,
-    Reading, Shown, SizeChoice, Tile, write_atomically,
+    ExpectedKind, Format, FormatError, Guess, Lines, Loss, MarkerSettings, ObjMesh, Paper,
+    ReadOption, ReadOptions, Reading, Shown, SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
-    DocumentMarker, Found, GivenFlaw, LaidPiece, LetGo, MarkerError, MarkerFormat, MarkerState,
-    MarkerSummary, NestOptions, Obstacle, PieceOutside, PieceOverlap, SearchProgress,
+    DocumentMarker, FinishedMarker, Found, GivenFlaw, LaidPiece, LetGo, MarkerError, MarkerFormat,
+    MarkerState, MarkerSummary, NestOptions, Obstacle, PieceOutside, PieceOverlap, SearchProgress,
     SearchWatcher, Start, WaitingPiece,
 };
+pub use toile_measure::{Measurements, Origin};
 pub use toile_nesting::{Budget, Pose, Search, Side, Strip};
-pub use toile_pattern::DisplayUnit;
 pub use toile_pattern::fields::Choice;
 pub use toile_pattern::{ClothSettings, NapRule, Print, Roll, Severity, SizeSelection, Spread};
+pub use toile_pattern::{Diagnostic, DisplayUnit};
 pub use tools::{
     BodyReport, BodySource, BodyStretch, MeshMeasured, Moment, PersonFile, fit_mesh, make_body,
     measure_mesh, mesh_panels, stretch_body,
 };
 pub use watcher::{Silent, Watcher};
 pub use write_options::WriteOptions;
-pub use write_pattern::WrittenPattern;
+pub use write_pattern::{WrittenPattern, write_project};

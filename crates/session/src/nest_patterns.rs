@@ -2,7 +2,7 @@
 
 use crate::input::read_file;
 use crate::open::read_input;
-use crate::output::{cannot, file_name};
+use crate::output::{File, cannot, file_name};
 use crate::sizes::selected;
 use crate::tools::{project_of, sound_draft};
 use crate::watched_search::lay_watched;
@@ -15,8 +15,8 @@ use toile_interchange::{
     ExpectedKind, MarkerSettings, is_jagua_instance, read_jagua, read_marker_settings,
     write_all_atomically, write_jagua,
 };
-use toile_marker::{Garments, MarkerError, marker_files};
-use toile_nesting::{Budget, Control, Progress, judge, make_marker};
+use toile_marker::{FinishedMarker, Garments, MarkerError, MarkerFormat, marker_files};
+use toile_nesting::{Budget, Control, Placement, Progress, judge, make_marker};
 use toile_pattern::{ClothSettings, Draft, Pattern};
 
 /// A pattern drafted in a size, and how often it is cut.
@@ -53,14 +53,27 @@ pub(crate) fn drafts_of(
     patterns: &[PathBuf],
     options: &NestOptions,
 ) -> Result<DraftedPatterns, SessionError> {
-    let mut drafts = Vec::new();
-    let mut names = Vec::new();
     let mut notes = Vec::new();
-    let mut known: Vec<String> = Vec::new();
+    let mut projects = Vec::new();
     for path in patterns {
         let (opened, found) = project_of(path, None)?;
         let note = |note| format!("{}: {note}", path.display());
         notes.extend(found.into_iter().map(note));
+        projects.push(opened);
+    }
+    let drafted = drafts_of_projects(&projects, options)?;
+    Ok(DraftedPatterns { notes, ..drafted })
+}
+
+/// Drafts of projects in the sizes asked for, else in the size of each, with its fabric and its width.
+fn drafts_of_projects(
+    projects: &[Project],
+    options: &NestOptions,
+) -> Result<DraftedPatterns, SessionError> {
+    let mut drafts = Vec::new();
+    let mut names = Vec::new();
+    let mut known: Vec<String> = Vec::new();
+    for opened in projects {
         let sizes = selected(&options.sizes, &opened.pattern)?;
         let several = sizes.len() > 1;
         let mut own_name: Option<String> = None;
@@ -87,7 +100,7 @@ pub(crate) fn drafts_of(
                 draft,
                 count,
                 label: label_of(
-                    (patterns.len() > 1).then_some(name.as_str()),
+                    (projects.len() > 1).then_some(name.as_str()),
                     size.filter(|_| several),
                 ),
             });
@@ -96,7 +109,7 @@ pub(crate) fn drafts_of(
     Ok(DraftedPatterns {
         drafts,
         names,
-        notes,
+        notes: Vec::new(),
     })
 }
 
@@ -117,6 +130,131 @@ fn label_of(pattern: Option<&str>, size: Option<&str>) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(" "))
 }
 
+/// A copy of a piece as it is laid on a marker: turned over along the warp if it is mirrored, its grain turned
+/// from the warp, then shifted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LaidCopy {
+    /// Number of the marker, from 0.
+    pub marker: usize,
+    /// Name of the piece.
+    pub piece: String,
+    /// Number of the copy, from 0.
+    pub copy: u32,
+    /// Angle from the warp to the grain of the piece (rad).
+    pub turn: f64,
+    /// Whether the copy lies face down.
+    pub mirrored: bool,
+    /// Shift after the turn (m).
+    pub translation: [f64; 2],
+    /// Cut line as it is laid, x along the warp (m).
+    pub outline: Vec<[f64; 2]>,
+}
+
+/// Markers of the pieces of one or more patterns laid together.
+#[derive(Clone, Debug)]
+pub struct LaidPatterns {
+    /// Names of the patterns with their sizes, as the title of the markers.
+    pub title: String,
+    /// The markers, one for each fabric and roll.
+    pub markers: Vec<FinishedMarker>,
+    /// Notes on parts of files that were left out or are missing.
+    pub notes: Vec<String>,
+}
+
+impl LaidPatterns {
+    fn of(
+        drafted: DraftedPatterns,
+        options: &NestOptions,
+        watcher: &mut dyn Watcher,
+    ) -> Result<Self, SessionError> {
+        let garments: Vec<Garments<'_>> = drafted.drafts.iter().map(|d| d.garments()).collect();
+        Ok(Self {
+            markers: lay_watched(&garments, options, watcher)?,
+            title: drafted.names.join(" + "),
+            notes: drafted.notes,
+        })
+    }
+
+    /// Summaries of the markers.
+    pub fn summaries(&self) -> Vec<MarkerSummary> {
+        self.markers.iter().map(FinishedMarker::summary).collect()
+    }
+
+    /// Every copy that was laid.
+    pub fn copies(&self) -> Vec<LaidCopy> {
+        let of_marker = |(number, finished): (usize, &FinishedMarker)| {
+            let copy = |placement: &Placement| {
+                let item = &finished.items[placement.item];
+                let laid = placement.pose(item).lay(&item.outline);
+                LaidCopy {
+                    marker: number,
+                    piece: item.name.clone(),
+                    copy: placement.copy,
+                    turn: placement.turn,
+                    mirrored: placement.mirrored,
+                    translation: placement.translation.into(),
+                    outline: laid.outer.iter().map(|&point| point.into()).collect(),
+                }
+            };
+            let copies = finished.marker.placements.iter().map(copy);
+            copies.collect::<Vec<LaidCopy>>()
+        };
+        self.markers
+            .iter()
+            .enumerate()
+            .flat_map(of_marker)
+            .collect()
+    }
+
+    /// Length of fabric of all markers together (m).
+    pub fn length(&self) -> f64 {
+        self.markers.iter().map(|laid| laid.marker.length).sum()
+    }
+
+    /// Area of the pieces divided by the area of fabric between the end margins, over all markers (1).
+    pub fn efficiency(&self) -> f64 {
+        if let [laid] = &self.markers[..] {
+            return laid.marker.efficiency;
+        }
+        let (mut pieces, mut fabric) = (0.0, 0.0);
+        for laid in self
+            .markers
+            .iter()
+            .filter(|laid| laid.marker.efficiency > 0.0)
+        {
+            let area = laid.cut_area();
+            pieces += area;
+            fabric += area / laid.marker.efficiency;
+        }
+        if fabric > 0.0 { pieces / fabric } else { 0.0 }
+    }
+
+    /// The files of the markers in formats, and for each marker what a format could not hold.
+    ///
+    /// # Errors
+    /// A marker that a format cannot hold.
+    pub fn files(
+        &self,
+        formats: &[MarkerFormat],
+    ) -> Result<(Vec<File>, Vec<Vec<String>>), SessionError> {
+        let mut files = Vec::new();
+        let lost = marker_files((&self.title, formats), &self.markers, &mut files)?;
+        Ok((files, lost))
+    }
+}
+
+/// Lays the pieces of projects together.
+///
+/// # Errors
+/// A pattern has faults, or cannot be laid.
+pub fn lay_projects(
+    projects: &[Project],
+    options: &NestOptions,
+    watcher: &mut dyn Watcher,
+) -> Result<LaidPatterns, SessionError> {
+    LaidPatterns::of(drafts_of_projects(projects, options)?, options, watcher)
+}
+
 /// Lays the pieces of one or more patterns together and writes the markers. Returns a summary of
 /// each marker and the files written.
 ///
@@ -127,22 +265,12 @@ pub fn nest_patterns(
     options: &NestOptions,
     (folder, watcher): (&Path, &mut dyn Watcher),
 ) -> Result<(Vec<MarkerSummary>, Vec<PathBuf>), SessionError> {
-    let DraftedPatterns {
-        drafts,
-        names,
-        notes,
-    } = drafts_of(patterns, options)?;
-    let garments: Vec<Garments<'_>> = drafts.iter().map(|d| d.garments()).collect();
-    let finished_markers = lay_watched(&garments, options, watcher)?;
-    let mut files = Vec::new();
-    let lost = marker_files(
-        (&names.join(" + "), &options.formats),
-        &finished_markers,
-        &mut files,
-    )?;
+    let laid = LaidPatterns::of(drafts_of(patterns, options)?, options, watcher)?;
+    let (files, lost) = laid.files(&options.formats)?;
+    let LaidPatterns { markers, notes, .. } = laid;
     write_all_atomically(folder, &files)?;
     let paths = files.iter().map(|(name, _)| folder.join(name)).collect();
-    let mut summary: Vec<MarkerSummary> = finished_markers.iter().map(|l| l.summary()).collect();
+    let mut summary: Vec<MarkerSummary> = markers.iter().map(|l| l.summary()).collect();
     for (summary, lost) in summary.iter_mut().zip(lost) {
         summary.notes.extend(lost);
     }

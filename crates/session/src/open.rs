@@ -131,6 +131,15 @@ pub(crate) fn open_pattern_from(
         None => read_file(path)?,
     };
     let companions = companions(path, &bytes, &options.with);
+    opened_from((path, &bytes), companions, (origin, &options.reading))
+}
+
+/// Reads the bytes of a pattern with the files that belong to it; `path` names them in errors.
+pub(crate) fn opened_from(
+    (path, bytes): (&Path, &[u8]),
+    companions: Vec<PathBuf>,
+    (origin, options): (PanelOrigin, &ReadOptions),
+) -> Result<OpenedPattern, SessionError> {
     let read_whole = |file: &PathBuf| {
         Ok(Companion {
             name: file
@@ -143,11 +152,10 @@ pub(crate) fn open_pattern_from(
     };
     let contents: Result<Vec<Companion>, SessionError> =
         companions.iter().map(read_whole).collect();
-    let mut reading =
-        read(&bytes, &options.reading, &contents?).map_err(|error| SessionError::Format {
-            path: PathBuf::from(path),
-            error,
-        })?;
+    let mut reading = read(bytes, options, &contents?).map_err(|error| SessionError::Format {
+        path: PathBuf::from(path),
+        error,
+    })?;
     if reading.pattern.name.is_empty() {
         reading.pattern.name = stem(path);
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use toile_interchange::FormatError;
 
 /// A file to write: its name and its content.
-pub(crate) type File = (String, Vec<u8>);
+pub type File = (String, Vec<u8>);
 
 /// Makes a file name of a name: letters and digits of any language, `-`, `_` and `.` (not at the start) stay,
 /// other characters become `_`.

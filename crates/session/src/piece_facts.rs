@@ -149,7 +149,7 @@ pub fn piece_facts((pattern, draft): (&Pattern, &Draft), size: Option<&str>) -> 
             edges: edges_of(piece)
                 .map(|edge| edge_facts((pattern, panel.id), edge))
                 .collect(),
-            notches: notches((pattern, panel), &cut),
+            notches: notch_facts((pattern, panel), &cut),
             darts: darts(&lineage, piece),
         })
     });
@@ -219,7 +219,7 @@ fn sewn_facts(piece: &Piece, cut: &CutPiece) -> RegionFacts {
 }
 
 /// Name of an edge, or of the operation that made it.
-fn edge_name((pattern, panel): (&Pattern, PanelId), origin: EdgeOrigin) -> String {
+pub(crate) fn edge_name((pattern, panel): (&Pattern, PanelId), origin: EdgeOrigin) -> String {
     let name = pattern.edge_name(panel, origin.name);
     name.unwrap_or_default().to_owned()
 }
@@ -240,7 +240,8 @@ fn edge_facts(of: (&Pattern, PanelId), edge: &PieceEdge) -> EdgeFacts {
     }
 }
 
-fn notches((pattern, panel): (&Pattern, &Panel), cut: &CutPiece) -> Vec<NotchFacts> {
+/// Facts of the notches of a piece as it is cut, in their order.
+pub(crate) fn notch_facts((pattern, panel): (&Pattern, &Panel), cut: &CutPiece) -> Vec<NotchFacts> {
     let lineage = pattern.lineage(panel);
     let notch = |notch: &toile_cut::CutNotch| {
         let named = lineage.iter().find_map(|own| own.notch(notch.id));

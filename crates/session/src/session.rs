@@ -7,6 +7,7 @@ use crate::history::{History, HistoryStep};
 use crate::input::is_pipe;
 use crate::journal::Journal;
 use crate::output::cannot;
+use crate::product::garment_obj;
 use crate::sizes::{SizedDiagnostic, sized_diagnostics, sizes_to_check};
 use crate::timing::Timing;
 use crate::watcher::ProgressShare;
@@ -17,6 +18,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 use toile_body::Mannequin;
+use toile_interchange::ObjMesh;
 use toile_pattern::{Diagnostic, Draft, Edit, Evaluation, SizeSelection};
 
 /// Edits that are shown and not committed yet.
@@ -49,6 +51,15 @@ impl Session {
     /// A session with an empty project.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A session of a project that was opened.
+    pub fn of(project: Project) -> Self {
+        Self {
+            saved: project.clone(),
+            project,
+            ..Self::default()
+        }
     }
 
     /// The project.
@@ -153,6 +164,12 @@ impl Session {
     /// The drape of the present project in a few numbers, if it was made.
     pub fn draped(&self) -> Option<Draped> {
         self.derived.drape.as_ref().map(|drape| drape.summary())
+    }
+
+    /// The mesh of the present project's garment as it hangs, if it was draped: welded, one group for each panel,
+    /// texture coordinates in the planes of the pieces (m).
+    pub fn draped_mesh(&self) -> Option<ObjMesh> {
+        self.derived.drape.as_ref().map(|drape| garment_obj(drape))
     }
 
     /// Adopts a drape that ran live, as if it had been made by a command: it is recorded in the journal, and

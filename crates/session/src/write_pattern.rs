@@ -60,6 +60,20 @@ pub(crate) fn format_of(to: &Path, asked: Option<Format>) -> Result<Format, Sess
     Ok(asked.or(Format::of_name(&name)).unwrap_or(Format::Native))
 }
 
+/// Writes a project in a format, else in the one that the file's name ends in; in sizes where the format holds
+/// shapes.
+///
+/// # Errors
+/// A name of no format, or of another one than asked for; sizes that the format does not hold; the garment has
+/// faults, and the format holds shapes; a file cannot be written.
+pub fn write_project(
+    project: &Project,
+    to: &Path,
+    (format, sizes): (Option<Format>, Option<&SizeSelection>),
+) -> Result<WrittenPattern, SessionError> {
+    write_pattern(project, to, format_of(to, format)?, sizes)
+}
+
 /// Writes the pattern of a project, and the files that belong to it beside it, whole or not at all.
 ///
 /// # Errors

@@ -57,9 +57,14 @@ pub fn list_of_files() -> String {
 /// The folders of sources, the crates in the order of the workspace.
 fn source_folders() -> Vec<String> {
     let manifest = fs::read_to_string(root().join("Cargo.toml")).unwrap_or_default();
-    let members = manifest.split("members = [").nth(1).unwrap_or_default();
-    let members = members.split(']').next().unwrap_or_default();
-    let quoted = members.split('"').skip(1).step_by(2);
+    let list = |name: &str| {
+        let after = manifest.split(name).nth(1).unwrap_or_default();
+        after.split(']').next().unwrap_or_default()
+    };
+    let lists = [list("\nmembers = ["), list("\nexclude = [")];
+    let quoted = lists
+        .into_iter()
+        .flat_map(|list| list.split('"').skip(1).step_by(2));
     let own = quoted.filter(|member| !member.starts_with("tests"));
     own.map(|member| format!("{member}/src")).collect()
 }

@@ -52,7 +52,7 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 24] = [
+const LAYERS: [(&str, &[&str]); 25] = [
     ("toile-realtime", &[]),
     ("toile-realtime-c", &["realtime"]),
     ("toile-geometry", &[]),
@@ -82,6 +82,7 @@ const LAYERS: [(&str, &[&str]); 24] = [
     ),
     ("toile-session", lowest(17)),
     ("toile", &["geometry", "measure", "session", "lab"]),
+    ("toile-python", &["session"]),
     (
         "toile-ui",
         &[
@@ -158,6 +159,63 @@ fn every_package_takes_the_common_lints() {
             .and_then(toml::Value::as_bool);
         assert_eq!(takes, Some(true), "{name} needs [lints] workspace = true");
     }
+}
+
+/// The table of a manifest at a path of keys.
+fn table_at<'a>(manifest: &'a toml::Table, keys: &[&str]) -> &'a toml::Table {
+    let mut table = manifest;
+    for key in keys {
+        table = table[*key].as_table().expect("a table");
+    }
+    table
+}
+
+#[test]
+fn the_python_module_takes_lints_and_profiles_of_the_workspace() {
+    let read = |place: &str| -> toml::Table {
+        let text = fs::read_to_string(root().join(place)).expect("readable");
+        text.parse().expect("a manifest is TOML")
+    };
+    let (whole, own) = (read("Cargo.toml"), read("crates/python/Cargo.toml"));
+    for keys in [&["workspace", "lints"][..], &["profile"]] {
+        assert_eq!(table_at(&whole, keys), table_at(&own, keys), "{keys:?}");
+    }
+    let common = table_at(&whole, &["workspace", "package"]);
+    for key in ["version", "edition", "rust-version", "license", "publish"] {
+        assert_eq!(common[key], own["package"][key], "{key}");
+    }
+}
+
+/// Versions of packages in a lock, by name.
+fn locked(place: &str) -> BTreeMap<String, BTreeSet<String>> {
+    let text = fs::read_to_string(root().join(place)).expect("readable");
+    let lock: toml::Table = text.parse().expect("a lock is TOML");
+    let mut versions: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for package in lock["package"].as_array().expect("a list of packages") {
+        let word = |key: &str| package[key].as_str().expect("a text").to_owned();
+        versions
+            .entry(word("name"))
+            .or_default()
+            .insert(word("version"));
+    }
+    versions
+}
+
+#[test]
+fn the_python_module_is_built_of_the_same_versions() {
+    let (whole, own) = (locked("Cargo.lock"), locked("crates/python/Cargo.lock"));
+    let other: Vec<_> = own
+        .iter()
+        .filter(|(name, versions)| {
+            whole
+                .get(*name)
+                .is_some_and(|known| !versions.is_subset(known))
+        })
+        .collect();
+    assert!(
+        other.is_empty(),
+        "take these as the main lock has them: {other:?}"
+    );
 }
 
 #[test]

@@ -16,7 +16,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use toile_drape::MaterialLaws;
 use toile_fabric::Material;
-use toile_flatten::{FlattenError, Flattened, Options, flatten, panel_outline};
+use toile_flatten::{FlattenError, Flattened, Options, PanelOutline, flatten, panel_outline};
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_interchange::{FormatError, write_all_atomically, write_document};
 use toile_pattern::{Fabric, Pattern};
@@ -104,21 +104,125 @@ pub fn flatten_mesh(
         "a panel is written as a pattern, NAME.toile.json",
     )?;
     let opened = open_mesh(mesh)?;
-    let mut notes = opened.notes;
-    let fabric = chosen_fabric(options.fabric.as_deref(), &mut notes)?;
     let name = to.file_name().unwrap_or_default().to_string_lossy();
     let stem = name[..name.len() - ".toile.json".len()].to_owned();
-    let surface = moved_out(&opened.mesh, options.ease)?;
-    let flat = flattened(&surface, options, &fabric.material, mesh, &mut notes)?;
-    let outline = panel_outline(&flat, TOLERANCE);
     let panel_name = if stem.is_empty() { "panel" } else { &stem };
-    let pattern = panel_pattern(panel_name, fabric.clone(), &outline);
+    let surface = FlatSurface::of(&opened.mesh, (mesh, panel_name), options)?;
     let folder = to.parent().unwrap_or(Path::new("")).to_owned();
     let names = [
         name.clone().into_owned(),
         format!("{stem}-flatten.json"),
         format!("{stem}-strain.png"),
     ];
+    let mut report = surface.report;
+    report.files = names.iter().map(|name| folder.join(name)).collect();
+    report.notes.splice(0..0, opened.notes);
+    let document =
+        write_document(&surface.pattern, &Default::default()).map_err(cannot("the pattern"))?;
+    let words = report.to_json().map_err(cannot("the report"))?;
+    let [pattern_name, report_name, picture_name] = names;
+    let files = [
+        (pattern_name, document.into_bytes()),
+        (report_name, words.into_bytes()),
+        (picture_name, strain_map(&surface.flat, options.strain)?),
+    ];
+    write_all_atomically(&folder, &files)?;
+    Ok(report)
+}
+
+/// A surface flattened to a panel.
+#[derive(Clone, Debug)]
+pub struct FlatSurface {
+    /// The panel as a pattern.
+    pub pattern: Pattern,
+    /// The report; no file is written.
+    pub report: FlattenReport,
+    flat: Flattened,
+}
+
+impl FlatSurface {
+    /// Flattens a mesh in memory: vertices (m) and triangles. The panel gets a name.
+    ///
+    /// # Errors
+    /// The mesh is no disk, or a number or the fabric cannot be used.
+    pub fn of_arrays(
+        vertices: &[[f64; 3]],
+        triangles: Vec<[u32; 3]>,
+        (name, options): (&str, &FlattenOptions),
+    ) -> Result<Self, SessionError> {
+        let mut mesh = TriangleMesh {
+            positions: vertices.iter().map(|&place| Vec3::from(place)).collect(),
+            triangles,
+        };
+        let path = Path::new("the mesh");
+        mesh.check().map_err(|defect| SessionError::Format {
+            path: path.to_owned(),
+            error: FormatError::new("the mesh", defect.to_string(), "correct the arrays"),
+        })?;
+        mesh.orient();
+        Self::of(&mesh, (path, name), options)
+    }
+
+    /// Flattens a mesh, which `path` names in errors.
+    fn of(
+        mesh: &TriangleMesh,
+        (path, name): (&Path, &str),
+        options: &FlattenOptions,
+    ) -> Result<Self, SessionError> {
+        let mut notes = Vec::new();
+        let fabric = chosen_fabric(options.fabric.as_deref(), &mut notes)?;
+        let surface = moved_out(mesh, options.ease)?;
+        let flat = flattened(&surface, options, &fabric.material, path, &mut notes)?;
+        let outline = panel_outline(&flat, TOLERANCE);
+        let pattern = panel_pattern(name, fabric.clone(), &outline);
+        let report = report_on(&flat, &outline, (options, fabric.name, notes));
+        Ok(Self {
+            pattern,
+            report,
+            flat,
+        })
+    }
+
+    /// Places of the vertices on the panel, the grain along +y (m). A vertex on a dart is there twice.
+    pub fn places(&self) -> Vec<[f64; 2]> {
+        self.flat.places.iter().map(|&place| place.into()).collect()
+    }
+
+    /// Places of the same vertices on the surface (m).
+    pub fn surface(&self) -> Vec<[f64; 3]> {
+        let places = &self.flat.region.mesh().positions;
+        places.iter().map(|&place| place.into()).collect()
+    }
+
+    /// Triangles of the panel and of the surface.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.flat.region.mesh().triangles
+    }
+
+    /// Relative change of length of each triangle from the panel to the surface, where it is most and where it is
+    /// least (1).
+    pub fn stretch(&self) -> Vec<[f64; 2]> {
+        let each = self.flat.stretch.iter();
+        each.map(|stretch| [stretch.most, stretch.least]).collect()
+    }
+}
+
+impl FlattenReport {
+    /// The report as JSON.
+    ///
+    /// # Errors
+    /// Numbers that JSON does not hold.
+    pub fn to_json(&self) -> Result<String, FormatError> {
+        serde_json::to_string_pretty(self)
+            .map_err(|error| FormatError::new("the report", error.to_string(), "report this fault"))
+    }
+}
+
+fn report_on(
+    flat: &Flattened,
+    outline: &PanelOutline,
+    (options, fabric, mut notes): (&FlattenOptions, String, Vec<String>),
+) -> FlattenReport {
     let places = &flat.places;
     let panel_area: f64 = (flat.region.mesh().triangles.iter())
         .map(|t| {
@@ -141,9 +245,9 @@ pub fn flatten_mesh(
             gusset + 1
         ));
     }
-    let report = FlattenReport {
-        files: names.iter().map(|name| folder.join(name)).collect(),
-        fabric: fabric.name.clone(),
+    FlattenReport {
+        files: Vec::new(),
+        fabric,
         triangles: flat.region.mesh().triangles.len(),
         surface_area_m2: flat.region.area(),
         panel_area_m2: panel_area,
@@ -154,7 +258,7 @@ pub fn flatten_mesh(
         before_darts: flat.before.clone(),
         darts: (outline.darts.iter())
             .map(|dart| DartReport {
-                length_m: length_on(&flat, dart.dart),
+                length_m: length_on(flat, dart.dart),
                 intake_m: dart.intake,
                 bow_m: dart.bow,
             })
@@ -163,19 +267,7 @@ pub fn flatten_mesh(
         steps: flat.minimum.steps,
         at_rest: flat.minimum.is_converged,
         notes,
-    };
-    let document = write_document(&pattern, &Default::default()).map_err(cannot("the pattern"))?;
-    let words = serde_json::to_string_pretty(&report)
-        .map_err(|error| FormatError::new("the report", error.to_string(), "report this fault"))
-        .map_err(cannot("the report"))?;
-    let [pattern_name, report_name, picture_name] = names;
-    let files = [
-        (pattern_name, document.into_bytes()),
-        (report_name, words.into_bytes()),
-        (picture_name, strain_map(&flat, options.strain)?),
-    ];
-    write_all_atomically(&folder, &files)?;
-    Ok(report)
+    }
 }
 
 fn chosen_fabric(asked: Option<&str>, notes: &mut Vec<String>) -> Result<Fabric, SessionError> {

@@ -55,7 +55,7 @@ pub fn suggest_seams(evaluation: &Evaluation) -> Result<SeamSuggestions, EditErr
         ));
     }
     let places = places::Places::new(&edges.all, &draft);
-    let images = images::mirror_images(&edges.all, &|i, j| places.from_image(i, j));
+    let images = images::mirror_images(&edges.all, &|i, j| places.image_distance(i, j));
     let known = cost::Known {
         edges: &edges.all,
         places: &places,

@@ -109,7 +109,7 @@ impl Places {
 
     /// Distance from the middle of an edge to the mirror image of the middle of another (m). `None`: they are
     /// not placed.
-    pub fn from_image(&self, i: usize, j: usize) -> Option<f64> {
+    pub fn image_distance(&self, i: usize, j: usize) -> Option<f64> {
         let (a, b) = (self.points[i]?[1], self.points[j]?[1]);
         Some((a - Vec3::new(-b.x, b.y, b.z)).norm())
     }
