@@ -52,7 +52,7 @@ const fn lowest(count: usize) -> &'static [&'static str] {
 }
 
 /// Which of our packages each may use. The arrows of docs/ARCHITECTURE.md, and nothing else.
-const LAYERS: [(&str, &[&str]); 24] = [
+const LAYERS: [(&str, &[&str]); 25] = [
     ("toile-realtime", &[]),
     ("toile-realtime-c", &["realtime"]),
     ("toile-geometry", &[]),
