@@ -179,7 +179,10 @@ fn a_compass_meets_a_line_on_the_side_of_the_pointer() {
     drafter.hover(drafter.place(0.3, 0.0));
     drafter.typed("2");
     let fault = drafter.window.state().fault().unwrap_or_default();
-    assert!(fault.starts_with("radius: ") && fault.contains("longer"), "{fault}");
+    assert!(
+        fault.starts_with("radius: ") && fault.contains("longer"),
+        "{fault}"
+    );
     assert_eq!(drafter.steps(), steps);
     drafter.take("Select");
     for _ in 0..2 {

@@ -97,7 +97,9 @@ pub(crate) struct SeamlyRows {
 pub(crate) fn seamly_base(text: &str) -> Result<Option<[f64; 2]>, FormatError> {
     let xml = Xml::read(text, "save the file again, or correct the line")?;
     let sizes = Sizes::of(&xml, unit_of(&xml)?)?;
-    Ok(sizes.filter(|sizes| !sizes.inches).and_then(|sizes| sizes.base))
+    Ok(sizes
+        .filter(|sizes| !sizes.inches)
+        .and_then(|sizes| sizes.base))
 }
 
 /// The rows of a measurement file in the chosen size, with the file's names and units.

@@ -69,13 +69,25 @@ const ORIGIN: [f64; 2] = [0.0, 0.0];
 fn a_compass_meets_a_line_where_three_four_five_says() {
     // The centre is 3 above the line, the compass 5 wide: it meets the line 4 to either side.
     let above = [0.2, 0.03];
-    is_at(found(on_line([ORIGIN, RIGHT, above], 0.05, true)), [0.24, 0.0]);
-    is_at(found(on_line([ORIGIN, RIGHT, above], 0.05, false)), [0.16, 0.0]);
+    is_at(
+        found(on_line([ORIGIN, RIGHT, above], 0.05, true)),
+        [0.24, 0.0],
+    );
+    is_at(
+        found(on_line([ORIGIN, RIGHT, above], 0.05, false)),
+        [0.16, 0.0],
+    );
     // The farther place is farther in the direction of the line.
-    is_at(found(on_line([RIGHT, ORIGIN, above], 0.05, true)), [0.16, 0.0]);
+    is_at(
+        found(on_line([RIGHT, ORIGIN, above], 0.05, true)),
+        [0.16, 0.0],
+    );
     // The line goes on beyond its points.
     let beyond = [0.9, -0.03];
-    is_at(found(on_line([ORIGIN, RIGHT, beyond], 0.05, true)), [0.94, 0.0]);
+    is_at(
+        found(on_line([ORIGIN, RIGHT, beyond], 0.05, true)),
+        [0.94, 0.0],
+    );
     // On a line that rises by 3 in 4 a centre on it is met at the distance along it.
     let slope = [[0.0, 0.0], [0.4, 0.3], [0.08, 0.06]];
     is_at(found(on_line(slope, 0.05, true)), [0.12, 0.09]);
@@ -86,14 +98,20 @@ fn a_compass_meets_a_line_where_three_four_five_says() {
 fn a_compass_that_touches_a_line_meets_it_once() {
     let above = [0.2, 0.03];
     for far in [true, false] {
-        is_at(found(on_line([ORIGIN, RIGHT, above], 0.03, far)), [0.2, 0.0]);
+        is_at(
+            found(on_line([ORIGIN, RIGHT, above], 0.03, far)),
+            [0.2, 0.0],
+        );
     }
 }
 
 #[test]
 fn a_compass_that_does_not_reach_its_line_is_told_with_a_remedy() {
     let (message, hint) = fault(on_line([ORIGIN, RIGHT, [0.2, 0.03]], 0.0299, true));
-    assert!(message.contains("farther away than the distance"), "{message}");
+    assert!(
+        message.contains("farther away than the distance"),
+        "{message}"
+    );
     assert!(hint.contains("longer"), "{hint}");
     let (message, _) = fault(on_line([ORIGIN, ORIGIN, [0.2, 0.03]], 0.05, true));
     assert!(message.contains("same place"), "{message}");
@@ -102,11 +120,23 @@ fn a_compass_that_does_not_reach_its_line_is_told_with_a_remedy() {
 #[test]
 fn two_compasses_meet_where_three_four_five_says() {
     // 30 and 40 from points that are 50 apart: a right angle, 24 beside the line and 18 along it.
-    is_at(found(by_two([ORIGIN, RIGHT], [0.3, 0.4], true)), [0.18, 0.24]);
-    is_at(found(by_two([ORIGIN, RIGHT], [0.3, 0.4], false)), [0.18, -0.24]);
-    is_at(found(by_two([RIGHT, ORIGIN], [0.4, 0.3], true)), [0.18, -0.24]);
+    is_at(
+        found(by_two([ORIGIN, RIGHT], [0.3, 0.4], true)),
+        [0.18, 0.24],
+    );
+    is_at(
+        found(by_two([ORIGIN, RIGHT], [0.3, 0.4], false)),
+        [0.18, -0.24],
+    );
+    is_at(
+        found(by_two([RIGHT, ORIGIN], [0.4, 0.3], true)),
+        [0.18, -0.24],
+    );
     // A leg that is longer than the way between both.
-    is_at(found(by_two([ORIGIN, [0.03, 0.0]], [0.05, 0.04], true)), [0.03, 0.04]);
+    is_at(
+        found(by_two([ORIGIN, [0.03, 0.0]], [0.05, 0.04], true)),
+        [0.03, 0.04],
+    );
 }
 
 #[test]

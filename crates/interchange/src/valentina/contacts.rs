@@ -129,10 +129,13 @@ fn triangle(build: &mut Build, node: Node<'_, '_>) -> Made {
     let middle = (ends[0].at + ends[1].at) / 2.0;
     let radius = (ends[1].at - ends[0].at).norm() / 2.0;
     if !separates(axis.map(|end| end.at), ends.map(|end| end.at)) {
-        let why = "its axis does not pass between its points: it lies where the axis meets their line";
+        let why =
+            "its axis does not pass between its points: it lies where the axis meets their line";
         return match super::points::cross(build, name(node), axis, ends) {
             Ok(made) => {
-                build.losses.push(Loss::at(name(node), "a construction", why));
+                build
+                    .losses
+                    .push(Loss::at(name(node), "a construction", why));
                 Ok(made)
             }
             Err(parallel) => Ok(build.at_origin(name(node), &parallel)),

@@ -63,7 +63,10 @@ pub(super) fn modeling(root: Node<'_, '_>) -> HashMap<u32, u32> {
         let steps = std::iter::successors(Some(object), |at| direct.get(at).copied());
         steps.take(MAX_STEPS).last().unwrap_or(object)
     };
-    direct.iter().map(|(&id, &object)| (id, followed(object))).collect()
+    direct
+        .iter()
+        .map(|(&id, &object)| (id, followed(object)))
+        .collect()
 }
 
 fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
@@ -104,7 +107,8 @@ fn piece(
             what: "loops of the outline".to_owned(),
             place: place.to_owned(),
             count: loops,
-            why: "it crosses itself there in the base size, and goes on from the crossing".to_owned(),
+            why: "it crosses itself there in the base size, and goes on from the crossing"
+                .to_owned(),
         });
     }
     turn(&mut found);
@@ -177,9 +181,8 @@ fn others(build: &mut Build, node: Node<'_, '_>, place: &str) {
         ("pins", "pins"),
         ("anchors", "anchors"),
     ] {
-        let count = child(node, list).map_or(0, |list| {
-            list.children().filter(Node::is_element).count()
-        });
+        let count =
+            child(node, list).map_or(0, |list| list.children().filter(Node::is_element).count());
         if count > 0 {
             build.losses.push(Loss {
                 what: what.to_owned(),

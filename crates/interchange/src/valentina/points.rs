@@ -234,7 +234,10 @@ fn bisector(build: &mut Build, node: Node<'_, '_>) -> Made {
         false => {
             let turn = format!("angle(?{}, ?{}) - {start}", corner.id.0, third.id.0);
             let half = a.perp(&b).atan2(a.dot(&b)) / 2.0;
-            (half, format!("{start} + atan2(sin({turn}), cos({turn})) / 2"))
+            (
+                half,
+                format!("{start} + atan2(sin({turn}), cos({turn})) / 2"),
+            )
         }
     };
     let rule = PointRule::Polar {

@@ -26,12 +26,7 @@ pub(super) struct Round<'a> {
 }
 
 /// Names radius and directions of an arc for formulas.
-pub(super) fn name_round(
-    build: &mut Build,
-    name: &str,
-    radius: &Slot,
-    [start, end]: [&Slot; 2],
-) {
+pub(super) fn name_round(build: &mut Build, name: &str, radius: &Slot, [start, end]: [&Slot; 2]) {
     build.name_length(format!("Radius{name}"), &radius.text, radius.value);
     for (number, slot) in [(1, start), (2, end)] {
         let of_angle = format!("Angle{number}{name}");
@@ -166,7 +161,9 @@ pub(super) fn elliptic(build: &mut Build, node: Node<'_, '_>) -> Made {
         let quarters = slot.value / FRAC_PI_2;
         slot.number.value().is_some() && (quarters - quarters.round()).abs() <= 1e-9
     };
-    let is_turned_alike = turned.as_ref().is_none_or(|slot| slot.number.value().is_some());
+    let is_turned_alike = turned
+        .as_ref()
+        .is_none_or(|slot| slot.number.value().is_some());
     let follows =
         is_turned_alike && is_along_axis(&start) && end.as_ref().is_some_and(is_along_axis);
     let tilt = turned.as_ref().map_or(0.0, |slot| slot.value);
@@ -177,15 +174,26 @@ pub(super) fn elliptic(build: &mut Build, node: Node<'_, '_>) -> Made {
         true => "a spline stands for it, that is off by less than a hundredth of a millimetre",
         false => "a spline stands for it, as it is in the base size",
     };
-    build.losses.push(Loss::at(name.clone(), "an elliptic arc", why));
+    build
+        .losses
+        .push(Loss::at(name.clone(), "an elliptic arc", why));
     let made = spline(build, &name, &points)?;
     for (k, radius) in radii.iter().enumerate() {
         build.name_length(format!("Radius{}{name}", k + 1), &radius.text, radius.value);
     }
-    let angles = [("Angle1", Some(&start)), ("Angle2", end.as_ref()), ("Rotation", turned.as_ref())];
+    let angles = [
+        ("Angle1", Some(&start)),
+        ("Angle2", end.as_ref()),
+        ("Rotation", turned.as_ref()),
+    ];
     for (what, slot) in angles {
         if let Some(slot) = slot {
-            build.name_value(format!("{what}{name}"), &slot.text, Quantity::Angle, slot.value);
+            build.name_value(
+                format!("{what}{name}"),
+                &slot.text,
+                Quantity::Angle,
+                slot.value,
+            );
         }
     }
     Ok(made)
@@ -229,8 +237,16 @@ fn points(
         let way = [-sin * reach, cos * reach];
         made.push(Handled {
             point: add(build, format!("{name} {k}"), [cos, sin])?,
-            before: add(build, format!("{name} before {k}"), [cos - way[0], sin - way[1]])?,
-            after: add(build, format!("{name} after {k}"), [cos + way[0], sin + way[1]])?,
+            before: add(
+                build,
+                format!("{name} before {k}"),
+                [cos - way[0], sin - way[1]],
+            )?,
+            after: add(
+                build,
+                format!("{name} after {k}"),
+                [cos + way[0], sin + way[1]],
+            )?,
         });
     }
     Ok(made)

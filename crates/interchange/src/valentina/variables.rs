@@ -325,7 +325,9 @@ fn measurements(
     }
     tell(build, (found, wanted), predicted, unknown);
     if !table.is_empty() {
-        let name = tables.as_ref().map_or("base", |tables| tables.base.as_str());
+        let name = tables
+            .as_ref()
+            .map_or("base", |tables| tables.base.as_str());
         add_sizes(build, name, table, others);
     }
     build.guesses.extend(tables.and_then(|tables| tables.guess));

@@ -42,6 +42,9 @@ pub(super) fn read(build: &mut Build, root: Node<'_, '_>) {
 
 /// The three numbers of a version.
 fn version(text: &str) -> Option<[u32; 3]> {
-    let parts: Option<Vec<u32>> = text.split('.').map(|part| part.trim().parse().ok()).collect();
+    let parts: Option<Vec<u32>> = text
+        .split('.')
+        .map(|part| part.trim().parse().ok())
+        .collect();
     <[u32; 3]>::try_from(parts?).ok()
 }

@@ -30,7 +30,8 @@ fn cycles_are_left_out_by_name() {
 
 #[test]
 fn lost_measurements_and_objects_are_told() {
-    let tools = "<point type='endLine' id='9' name='P' basePoint='1' angle='0' length='waist_circ+@own'/>";
+    let tools =
+        "<point type='endLine' id='9' name='P' basePoint='1' angle='0' length='waist_circ+@own'/>";
     let before = "<measurements>gone.vit</measurements>";
     let reading = read(&file(before, &format!("{AXES}{tools}"), ""));
     let told: Vec<&str> = reading.guesses.iter().map(|guess| guess.what).collect();
@@ -56,7 +57,12 @@ fn files_of_newer_versions_are_read_and_said() {
     ] {
         let text = file("", &format!("{AXES}{tools}"), "").replace("0.4.0", version);
         let reading = read(&text);
-        assert_eq!(reading.notes.len(), usize::from(is_newer), "{version}: {:?}", reading.notes);
+        assert_eq!(
+            reading.notes.len(),
+            usize::from(is_newer),
+            "{version}: {:?}",
+            reading.notes
+        );
         if is_newer {
             assert!(reading.notes[0].contains(version));
         }
@@ -120,7 +126,10 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self, below: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % below.max(1)
     }
 }
@@ -128,7 +137,8 @@ impl Random {
 /// A text with some of its parts damaged.
 fn damaged(text: &str, random: &mut Random) -> String {
     const PIECES: &[&str] = &[
-        "", "0", "-1", "1e309", "NaN", "\"", "<", "/>", "(", ")", "?", ":", "-9999999", "Line_A_A", "1/0", "id=", "^", "\u{416}",
+        "", "0", "-1", "1e309", "NaN", "\"", "<", "/>", "(", ")", "?", ":", "-9999999", "Line_A_A",
+        "1/0", "id=", "^", "\u{416}",
     ];
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..=random.next(4) {
@@ -143,7 +153,10 @@ fn damaged(text: &str, random: &mut Random) -> String {
             2 => {
                 // A number becomes another: references point elsewhere, lengths change.
                 let digits = bytes.iter().enumerate().skip(at);
-                let found = digits.filter(|(_, byte)| byte.is_ascii_digit()).map(|(k, _)| k).next();
+                let found = digits
+                    .filter(|(_, byte)| byte.is_ascii_digit())
+                    .map(|(k, _)| k)
+                    .next();
                 if let Some(k) = found {
                     bytes[k] = b'0' + random.next(10) as u8;
                 }

@@ -28,21 +28,35 @@ fn area(reading: &ValentinaReading) -> f64 {
     let evaluation = evaluated(reading);
     assert_eq!(evaluation.diagnostics(), []);
     let outline = reading.pattern.panels[0].outline().unwrap();
-    let paths = outline.edges.iter().map(|edge| evaluation.edge(edge.id).unwrap());
-    let swept: f64 = paths.flat_map(|path| path.curves()).map(Curve::swept_area).sum();
+    let paths = outline
+        .edges
+        .iter()
+        .map(|edge| evaluation.edge(edge.id).unwrap());
+    let swept: f64 = paths
+        .flat_map(|path| path.curves())
+        .map(Curve::swept_area)
+        .sum();
     swept / 2.0 * 1e4
 }
 
 fn check(what: &str, reading: &ValentinaReading, wanted: f64, losses: usize) {
     let found = area(reading);
-    assert!((found - wanted).abs() < 1e-6, "{what}: {found}, not {wanted}");
+    assert!(
+        (found - wanted).abs() < 1e-6,
+        "{what}: {found}, not {wanted}"
+    );
     assert_eq!(reading.losses.len(), losses, "{what}: {:?}", reading.losses);
 }
 
 #[test]
 fn a_curve_is_cut_to_neighbours_on_it_and_left_out_where_it_runs_back() {
     let quarter = std::f64::consts::PI * 25.0;
-    let (o, x, y, m) = (("Point", 1, ""), ("Point", 2, ""), ("Point", 3, ""), ("Point", 6, ""));
+    let (o, x, y, m) = (
+        ("Point", 1, ""),
+        ("Point", 2, ""),
+        ("Point", 3, ""),
+        ("Point", 6, ""),
+    );
     let (on, back) = (("Arc", 5, ""), ("Arc", 5, "reverse='1'"));
     for (what, nodes, wanted, losses) in [
         ("whole", [o, x, on, y], quarter, 0),
@@ -57,8 +71,18 @@ fn a_curve_is_cut_to_neighbours_on_it_and_left_out_where_it_runs_back() {
     }
     // Nodes that are excluded do not cut.
     let excluded = ("Point", 6, "excluded='1'");
-    check("excluded", &piece(ARC, &[o, x, on, excluded, y]), quarter, 0);
-    check("excluded before", &piece(ARC, &[o, x, excluded, on, y]), quarter, 0);
+    check(
+        "excluded",
+        &piece(ARC, &[o, x, on, excluded, y]),
+        quarter,
+        0,
+    );
+    check(
+        "excluded before",
+        &piece(ARC, &[o, x, excluded, on, y]),
+        quarter,
+        0,
+    );
 }
 
 #[test]
@@ -68,13 +92,21 @@ fn a_curve_is_cut_by_the_end_of_a_neighbouring_curve() {
         "{ARC}<spline type='simpleInteractive' id='7' point1='6' point4='1' angle1='225' angle2='45' length1='3' length2='3'/>"
     );
     let reading = piece(&tools, &[("Point", 2, ""), ("Arc", 5, ""), ("Arc", 7, "")]);
-    check("curve beside curve", &reading, std::f64::consts::PI * 12.5, 0);
+    check(
+        "curve beside curve",
+        &reading,
+        std::f64::consts::PI * 12.5,
+        0,
+    );
 }
 
 #[test]
 fn loops_of_an_outline_are_left_out_from_its_first_node_on() {
     let corner = |id: u32, x: f64, y: f64| {
-        format!("<point type='single' id='{id}' name='N{id}' x='{x}' y='{}'/>", -y)
+        format!(
+            "<point type='single' id='{id}' name='N{id}' x='{x}' y='{}'/>",
+            -y
+        )
     };
     let nodes = |ids: &[u32]| -> Vec<(&'static str, u32, &'static str)> {
         ids.iter().map(|&id| ("Point", id, "")).collect()
@@ -108,7 +140,11 @@ fn loops_of_an_outline_are_left_out_from_its_first_node_on() {
 
 #[test]
 fn nodes_may_be_known_under_the_number_of_another_drawing_or_node() {
-    let text = file("", AXES, "<modeling><point id='101' idObject='1'/><point id='102' idObject='2'/></modeling>");
+    let text = file(
+        "",
+        AXES,
+        "<modeling><point id='101' idObject='1'/><point id='102' idObject='2'/></modeling>",
+    );
     let second = "<draw name='second'><calculation/><modeling><point id='201' idObject='101'/>\
         <point id='203' idObject='3'/></modeling><details><detail id='300' name='d' version='2'><nodes>\
         <node type='NodePoint' idObject='201'/><node type='NodePoint' idObject='102'/>\
@@ -129,5 +165,8 @@ fn lists_of_a_piece_without_counterpart_are_named() {
         .iter()
         .map(|loss| (loss.what.as_str(), loss.count))
         .collect();
-    assert_eq!(told, [("place labels", 2), ("pins", 1), ("groups of objects", 1)]);
+    assert_eq!(
+        told,
+        [("place labels", 2), ("pins", 1), ("groups of objects", 1)]
+    );
 }

@@ -42,7 +42,11 @@ const MEASURED: &[Row] = &[
         Some("keiko.vit"),
         &[("Detail", 1235.0062), ("Detail 2", 1244.1399)],
     ),
-    ("Sleeve.val", Some("GOST_man_ru.vst"), &[("Detail", 2111.894)]),
+    (
+        "Sleeve.val",
+        Some("GOST_man_ru.vst"),
+        &[("Detail", 2111.894)],
+    ),
     ("TestDart.val", None, &[("Detail", 849.6277)]),
 ];
 /// Pieces that may differ by more.

@@ -22,12 +22,28 @@ fn companion() -> Companion {
 fn a_table_for_several_sizes_becomes_sizes() {
     let tool = "<point type='endLine' id='9' name='P' basePoint='1' angle='0' length='bust_circ/4+hip_circ+@M1'/>";
     let before = "<measurements>GOST.vst</measurements>";
-    let reading = read_valentina(&file(before, &format!("{AXES}{tool}"), ""), &[companion()]).unwrap();
+    let reading =
+        read_valentina(&file(before, &format!("{AXES}{tool}"), ""), &[companion()]).unwrap();
     assert_eq!(reading.losses, []);
-    let names: Vec<&str> = reading.pattern.sizes.iter().map(|size| size.name.as_str()).collect();
+    let names: Vec<&str> = reading
+        .pattern
+        .sizes
+        .iter()
+        .map(|size| size.name.as_str())
+        .collect();
     assert_eq!(
         names,
-        ["50", "44", "46", "48", "52", "54", "56", "50 height 170", "50 height 182"]
+        [
+            "50",
+            "44",
+            "46",
+            "48",
+            "52",
+            "54",
+            "56",
+            "50 height 170",
+            "50 height 182"
+        ]
     );
     assert_eq!(reading.pattern.base_size, Some(reading.pattern.sizes[0].id));
     assert!(reading.guesses.iter().any(|guess| guess.what == "sizes"));
@@ -38,7 +54,12 @@ fn a_table_for_several_sizes_becomes_sizes() {
         ("56", [112.0, 103.2, 11.5]),
         ("50 height 182", [100.0, 97.2, 10.0]),
     ] {
-        let size = reading.pattern.sizes.iter().find(|size| size.name == name).unwrap();
+        let size = reading
+            .pattern
+            .sizes
+            .iter()
+            .find(|size| size.name == name)
+            .unwrap();
         let mut pattern = reading.pattern.clone();
         pattern.base_size = Some(size.id);
         let evaluation = Evaluation::new(&pattern, &size.measurements);
@@ -55,7 +76,12 @@ fn a_table_of_one_body_is_one_size() {
         bytes: b"<vit><unit>cm</unit><body-measurements><m name='bust_circ' value='90'/></body-measurements></vit>".to_vec(),
     };
     let reading = read_valentina(&file("", AXES, ""), &[body]).unwrap();
-    let names: Vec<&str> = reading.pattern.sizes.iter().map(|size| size.name.as_str()).collect();
+    let names: Vec<&str> = reading
+        .pattern
+        .sizes
+        .iter()
+        .map(|size| size.name.as_str())
+        .collect();
     assert_eq!(names, ["anna"]);
     assert_eq!(reading.guesses, []);
 }

@@ -23,7 +23,8 @@ fn m(x: f64, y: f64) -> String {
 
 #[test]
 fn a_shoulder_reaches_beyond_the_end_of_its_line_or_stays_there() {
-    let tool = "<point type='shoulder' id='9' name='P' p1Line='1' p2Line='2' pShoulder='20' length='3'/>";
+    let tool =
+        "<point type='shoulder' id='9' name='P' p1Line='1' p2Line='2' pShoulder='20' length='3'/>";
     check_tool(&format!("{}{tool}", m(15.0, 0.0)), [18.0, 0.0]);
     check_tool(&format!("{}{tool}", m(8.0, 1.8)), [10.4, 0.0]);
     check_told(&format!("{}{tool}", m(5.0, 0.0)), [10.0, 0.0]);
@@ -89,7 +90,8 @@ fn tools_without_a_place_lie_at_the_origin_which_is_said() {
 
 #[test]
 fn lines_without_length_give_no_direction() {
-    let same = "<point type='alongLine' id='4' name='S' firstPoint='2' secondPoint='1' length='0'/>";
+    let same =
+        "<point type='alongLine' id='4' name='S' firstPoint='2' secondPoint='1' length='0'/>";
     for tool in [
         "<point type='alongLine' id='9' name='P' firstPoint='2' secondPoint='4' length='4'/>",
         "<point type='normal' id='9' name='P' firstPoint='2' secondPoint='4' angle='0' length='4'/>",
@@ -103,13 +105,20 @@ fn the_bisector_of_a_straight_angle_lies_to_the_left_of_its_first_leg() {
     let left = "<point type='endLine' id='4' name='L' basePoint='1' angle='180' length='7'/>";
     let tool = "<point type='bisector' id='9' name='P' firstPoint='2' secondPoint='1' thirdPoint='4' length='2'/>";
     check_tool(&format!("{left}{tool}"), [0.0, 2.0]);
-    let back = tool.replace("firstPoint='2'", "firstPoint='4'").replace("thirdPoint='4'", "thirdPoint='2'");
+    let back = tool
+        .replace("firstPoint='2'", "firstPoint='4'")
+        .replace("thirdPoint='4'", "thirdPoint='2'");
     check_tool(&format!("{left}{back}"), [0.0, -2.0]);
 }
 
 #[test]
 fn full_circles_and_arcs_against_the_clock_are_cut_where_they_should() {
-    let on = |degrees: f64| [5.0 * degrees.to_radians().cos(), 5.0 * degrees.to_radians().sin()];
+    let on = |degrees: f64| {
+        [
+            5.0 * degrees.to_radians().cos(),
+            5.0 * degrees.to_radians().sin(),
+        ]
+    };
     for (arc, third) in [
         ("angle1='90' angle2='0'", 180.0),
         ("angle1='350' angle2='10'", 350.0 + 20.0 / 3.0),
@@ -142,8 +151,16 @@ fn full_circles_and_arcs_against_the_clock_are_cut_where_they_should() {
 
 #[test]
 fn cuts_beyond_a_curve_stay_a_millimetre_inside_it() {
-    for (length, degrees) in [("0", 0.1 / 5.0), ("-9", 0.1 / 5.0), ("Arc_O_5+3", -0.1 / 5.0)] {
-        let from = if degrees < 0.0 { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+    for (length, degrees) in [
+        ("0", 0.1 / 5.0),
+        ("-9", 0.1 / 5.0),
+        ("Arc_O_5+3", -0.1 / 5.0),
+    ] {
+        let from = if degrees < 0.0 {
+            std::f64::consts::FRAC_PI_2
+        } else {
+            0.0
+        };
         let angle: f64 = from + degrees;
         let tool = format!("{ARC}<point type='cutArc' id='9' name='P' arc='5' length='{length}'/>");
         check_told(&tool, [5.0 * angle.cos(), 5.0 * angle.sin()]);
@@ -199,7 +216,11 @@ fn operations_have_names_of_their_own_for_their_curves() {
         <destination><item idObject='21'/><item idObject='22'/></destination></operation>";
     let spline = "<spline type='simpleInteractive' id='7' point1='1' point4='2' angle1='0' angle2='180' length1='3' length2='3'/>";
     let quarter = std::f64::consts::PI * 2.5;
-    for (formula, value) in [("Arc_O_21", quarter), ("Spl_O_Xa1", 10.0), ("Spl_moved", 10.0)] {
+    for (formula, value) in [
+        ("Arc_O_21", quarter),
+        ("Spl_O_Xa1", 10.0),
+        ("Spl_moved", 10.0),
+    ] {
         let start = "<operation type='rotation' id='20' center='1' angle='90' suffix='a1'>";
         let tool = format!(
             "<point type='endLine' id='9' name='P' basePoint='1' angle='0' length='{formula}'/>"
@@ -216,7 +237,9 @@ fn what_is_moved_may_be_turned_too() {
     // O to (3, 0), then a quarter round X: from 7 left of X to 7 below it.
     let lists = "<source><item idObject='1'/></source><destination><item idObject='21'/></destination></operation>";
     let turned = |centre: &str| {
-        format!("<operation type='moving' id='20' angle='0' length='3' rotationAngle='90' {centre} suffix='a1'>{lists}")
+        format!(
+            "<operation type='moving' id='20' angle='0' length='3' rotationAngle='90' {centre} suffix='a1'>{lists}"
+        )
     };
     let reading = read(&file("", &format!("{AXES}{}", turned("center='2'")), ""));
     assert_eq!(reading.losses, []);
@@ -236,7 +259,10 @@ fn ellipses_follow_their_radii_and_may_be_given_by_a_length() {
     assert_near(place(&reading, "Q"), [0.0, 5.0], "the short axis");
     let sheet = &reading.pattern.sheets[0];
     let start = sheet.point_named("ElArc_O_5 0").unwrap();
-    assert!(matches!(start.rule, toile_pattern::PointRule::Offset { .. }));
+    assert!(matches!(
+        start.rule,
+        toile_pattern::PointRule::Offset { .. }
+    ));
     // A circle as an ellipse has its length where it should be: a quarter of 5 cm.
     let quarter = std::f64::consts::PI * 2.5;
     let tools = format!(
