@@ -68,6 +68,8 @@ pub(super) struct Build {
     pub named: HashMap<String, PointThing>,
     /// Values that formulas name.
     pub symbols: HashMap<String, Symbol>,
+    /// Numbers of parts of cut curves, under which the whole curve is known.
+    pub parts: BTreeSet<u32>,
     /// Quantities of names that are known before their values.
     pub quantities: HashMap<String, Quantity>,
     /// Names that formulas of the file use.
@@ -92,6 +94,7 @@ impl Build {
             circles: HashMap::new(),
             named: HashMap::new(),
             symbols: HashMap::new(),
+            parts: BTreeSet::new(),
             quantities: HashMap::new(),
             used: BTreeSet::new(),
             guesses: Vec::new(),
@@ -300,9 +303,23 @@ impl Build {
     ///
     /// # Errors
     /// There is no such curve: in words.
-    pub fn curve(&self, node: Node<'_, '_>, attribute: &str) -> Result<Arc<CurveThing>, String> {
-        match self.things.get(&reference(node, attribute)?) {
-            Some(Thing::Curve(curve)) => Ok(curve.clone()),
+    pub fn curve(
+        &mut self,
+        node: Node<'_, '_>,
+        attribute: &str,
+    ) -> Result<Arc<CurveThing>, String> {
+        let number = reference(node, attribute)?;
+        match self.things.get(&number) {
+            Some(Thing::Curve(curve)) => {
+                if self.parts.contains(&number) {
+                    let name = node.attribute("name").unwrap_or_default();
+                    self.notes.push(format!(
+                        "{name:?} cuts a part of {}: the whole curve is taken, as Valentina does since 0.2.5",
+                        curve.name
+                    ));
+                }
+                Ok(curve.clone())
+            }
             Some(Thing::Point(_)) => Err(format!("its {attribute} is a point, not a curve")),
             None => Err(format!("its {attribute} is not there or was left out")),
         }
@@ -311,6 +328,18 @@ impl Build {
     /// Whether a formula of the file uses a name that is not known yet.
     pub fn is_wanted(&self, name: &str) -> bool {
         self.used.contains(name) && !self.symbols.contains_key(name)
+    }
+
+    /// The bulge of a curve of the document that is an arc.
+    pub fn bulge_of(&self, curve: CurveId) -> Option<Number> {
+        let mut curves = self.sheets.iter().flat_map(|own| &own.sheet.curves);
+        match &curves.find(|one| one.id == curve)?.rule {
+            CurveRule::Arc { bulge } => Some(bulge.clone()),
+            CurveRule::Line
+            | CurveRule::Spline { .. }
+            | CurveRule::Mirrored { .. }
+            | CurveRule::Copy { .. } => None,
+        }
     }
 
     /// Gives the values of a curve the names that they have by another name of the curve too.

@@ -150,7 +150,7 @@ pub(super) fn parts(
         }),
     ];
     for (k, start) in starts.into_iter().enumerate() {
-        let part = CurveThing {
+        let part = || CurveThing {
             ends: ends[k],
             path: curve.path.between(reach[k][0], reach[k][1]),
             name: names[k].clone(),
@@ -174,8 +174,19 @@ pub(super) fn parts(
         if let Some(alias) = node.attribute(["alias1", "alias2"][k]) {
             build.name_also(&names[k], alias);
         }
-        let known = build.things.entry(numbers[k]);
-        known.or_insert(Thing::Curve(Arc::new(part)));
+        let has_own_number = node.has_attribute(["segment1Id", "segment2Id"][k]);
+        let thing = match has_own_number {
+            true => Arc::new(part()),
+            false => {
+                // Files that know parts by these numbers mean the whole curve by them since version 0.2.5.
+                build.parts.insert(numbers[k]);
+                curve.clone()
+            }
+        };
+        build
+            .things
+            .entry(numbers[k])
+            .or_insert(Thing::Curve(thing));
     }
     Ok(())
 }

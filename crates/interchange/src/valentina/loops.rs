@@ -2,7 +2,7 @@
 
 use super::build::Build;
 use super::nodes::{Outline, Stretch};
-use super::things::CurveThing;
+use super::things::{CurveThing, PointThing};
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Curve as Piece, Path, Vec2};
 use toile_pattern::PointRule;
@@ -22,6 +22,8 @@ struct Crossing {
     /// Lengths from the starts of both (m).
     along: [f64; 2],
     at: Vec2,
+    /// The start of the later stretch, where it lies on the earlier one and goes on along it.
+    corner: Option<PointThing>,
 }
 
 /// Leaves out the loops of a closed outline, and returns their number: from its first node on, each crossing
@@ -39,12 +41,15 @@ pub(super) fn leave_out_loops(build: &mut Build, outline: &mut Outline) -> usize
         else {
             return count;
         };
-        let Some(rule) = rule([&first, &second], found.at) else {
-            // It is no crossing of the curves as a whole: the outline stays as it is there.
-            from = i + 1;
-            continue;
+        let corner = match (found.corner, rule([&first, &second], found.at)) {
+            (Some(corner), _) => corner,
+            (None, Some(rule)) => build.add_point("crossing of the outline", rule, found.at),
+            (None, None) => {
+                // It is no crossing of the curves as a whole: the outline stays as it is there.
+                from = i + 1;
+                continue;
+            }
         };
-        let corner = build.add_point("crossing of the outline", rule, found.at);
         let start = &mut outline.stretches[i];
         start.path = start.path.between(0.0, found.along[0]);
         start.ends[1] = corner;
@@ -88,6 +93,15 @@ fn first_crossing(stretches: &[Stretch], from: usize) -> Option<Crossing> {
 /// The crossing of two stretches, apart from their ends, that comes first along the earlier one.
 fn crossing(stretches: &[Stretch], [i, j]: [usize; 2]) -> Option<Crossing> {
     let (a, b) = (&stretches[i], &stretches[j]);
+    if let Some(along) = taken_up(a, b).filter(|_| j > i + 1) {
+        let corner = b.ends[0];
+        return Some(Crossing {
+            stretches: [i, j],
+            along: [along, 0.0],
+            at: corner.at,
+            corner: Some(corner),
+        });
+    }
     if a.curve == b.curve {
         return None;
     }
@@ -101,7 +115,26 @@ fn crossing(stretches: &[Stretch], [i, j]: [usize; 2]) -> Option<Crossing> {
         stretches: [i, j],
         along: [one.here.along, one.there.along],
         at: one.point,
+        corner: None,
     })
+}
+
+/// Length along a straight stretch at which another begins that goes on along it, past its end or not.
+fn taken_up(a: &Stretch, b: &Stretch) -> Option<f64> {
+    let ends = |one: &Stretch| match one.path.curves() {
+        [Piece::Line { start, end }] => Some([*start, *end]),
+        _ => None,
+    };
+    let ([from, to], [start, end]) = (ends(a)?, ends(b)?);
+    let (way, other) = (
+        (to - from).try_normalize(1e-12)?,
+        (end - start).try_normalize(1e-12)?,
+    );
+    let along = way.dot(&(start - from));
+    let is_inside = (NEAR_ENDS..=(to - from).norm() - NEAR_ENDS).contains(&along);
+    let is_on = way.perp(&(start - from)).abs() <= SAME_PLACE;
+    let is_alike = way.dot(&other) > 0.0 && way.perp(&other).abs() <= 1e-6;
+    (is_inside && is_on && is_alike).then_some(along)
 }
 
 /// The ends of a curve that is one straight line.

@@ -176,7 +176,7 @@ fn neighbour(nodes: &[PieceNode], at: usize, step: isize, is_closed: bool) -> Op
 }
 
 /// A curve's stretch between the neighbours that lie on it, else between its own ends, in the direction of
-/// the outline. No course: these run the other way along the curve, and the outline goes straight.
+/// the outline. No course: the curve ends where it is reached.
 fn cut(
     curve: &CurveThing,
     reverse: bool,
@@ -202,11 +202,15 @@ fn cut(
             *end = own;
         }
     }
-    let runs_on = match reverse {
+    let runs_on = |ends: &[(PointThing, f64); 2]| match reverse {
         false => ends[1].1 - ends[0].1 > SAME_CORNER,
         true => ends[0].1 - ends[1].1 > SAME_CORNER,
     };
-    if !runs_on {
+    if !runs_on(&ends) {
+        // The next neighbour lies behind: the curve runs on to its own end, and the outline back from there.
+        ends[1] = own[1];
+    }
+    if !runs_on(&ends) {
         return (ends.map(|end| end.0), None);
     }
     let (from, to) = (ends[0].1.min(ends[1].1), ends[0].1.max(ends[1].1));
@@ -253,7 +257,7 @@ fn follow(build: &mut Build, nodes: &[PieceNode], is_closed: bool, outline: &mut
                 first.get_or_insert(start);
                 let Some(path) = path else {
                     let why = format!(
-                        "curve {:?} runs against the outline: a straight line stands for it, as there",
+                        "curve {:?} runs against the outline: it goes straight, as there",
                         curve.name
                     );
                     outline.told.push(why);

@@ -296,6 +296,16 @@ impl Moving {
             self.point(build, whole.ends[0])?,
             self.point(build, whole.ends[1])?,
         ];
+        if let (Motion::Mirrored { .. }, Some(bulge)) = (&self.motion, build.bulge_of(of.id)) {
+            // A mirrored arc runs counter-clockwise again: from the image of its end.
+            let pieces: Vec<Piece> = moved(&whole, |piece| image(&self.motion, piece));
+            let pieces = Path::new(pieces).reversed().curves().to_vec();
+            let name = self.name_of(build, &whole, ends);
+            let rule = CurveRule::Arc { bulge };
+            let made = build.add_curve(&name, [ends[1], ends[0]], rule, pieces);
+            self.curves.insert(of.id, made.clone());
+            return Ok(made);
+        }
         let rule = match &self.motion {
             Motion::Mirrored { line } => CurveRule::Mirrored {
                 of: of.id,

@@ -101,6 +101,9 @@ pub(super) fn exponent(formula: &Expression) -> Option<f64> {
         Expression::Literal(number) => Some(*number),
         Expression::Negative(inner) => exponent(inner).map(|number| -number),
         Expression::Pair(Operator::Divide, pair) => Some(exponent(&pair[0])? / exponent(&pair[1])?),
+        Expression::Pair(Operator::Power, pair) => {
+            Some(exponent(&pair[0])?.powf(exponent(&pair[1])?))
+        }
         Expression::Name(_)
         | Expression::Pair(..)
         | Expression::Choice(_)
