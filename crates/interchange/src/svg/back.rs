@@ -4,7 +4,7 @@
 use super::drawing::Drawing;
 use super::kinds::{LineKind, NAMESPACE};
 use super::likeness::{Outlines, are_alike};
-use super::pattern_reader::SvgReading;
+use super::reading::{SvgReading, sew_line_guess};
 use super::scale::Scale;
 use super::shape::path;
 use super::{layers, plain};
@@ -179,6 +179,7 @@ pub(super) fn read(
         drawn.push(piece);
         losses.extend(lost);
     }
+    let guesses = sew_line_guess(&pieces, options).into_iter().collect();
     let first = pattern.panels.len();
     losses.extend(add_pieces(&mut pattern, &drawn));
     let new: Vec<PanelId> = pattern.panels[first..]
@@ -199,7 +200,7 @@ pub(super) fn read(
     Ok(SvgReading {
         pattern,
         fitting: file.fitting,
-        guesses: Vec::new(),
+        guesses,
         losses,
         notes,
     })

@@ -8,7 +8,7 @@ use toile_geometry::{Bounds2, Vec2};
 /// Largest distance of lines that are alike (mm).
 const ALIKE: f64 = 0.01;
 /// Shares of a way at which it is compared.
-const SHARES: [f64; 4] = [0.0, 0.25, 0.5, 0.75];
+const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Lines of a panel, by their kinds (mm, y down).
 #[derive(Debug, Default)]
@@ -130,6 +130,9 @@ mod tests {
         assert_eq!(are_alike(&written, &other), Some(Vec2::zeros()));
         let edited = outlines("M0 0L100 0A50 50 0 0 1 0 0.03Z");
         assert_eq!(are_alike(&written, &edited), None);
+        // An end that goes on along its line.
+        let [short, long] = ["M0 0L5 0", "M0 0L5.5 0"].map(outlines);
+        assert_eq!(are_alike(&short, &long), None);
         let more = outlines("M0 0L100 0A50 50 0 0 1 0 0ZM10 0L20 0");
         assert_eq!(are_alike(&written, &more), None);
     }

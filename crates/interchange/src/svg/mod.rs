@@ -8,7 +8,9 @@
 //! - [`crate::svg::freesewing`], [`crate::svg::plain`], [`crate::svg::layers`]: pieces of FreeSewing, of any
 //!   other program, and of layers that this program wrote;
 //! - [`crate::svg::pattern_reader`], [`crate::svg::pattern_writer`]: patterns;
-//! - [`crate::svg::back`]: panels that were edited in a file of this program;
+//! - [`crate::svg::kinds`], [`crate::svg::panel_lines`]: what this program marks its lines with, and writes of a
+//!   panel;
+//! - [`crate::svg::back`], [`crate::svg::likeness`]: panels that were edited in a file of this program;
 //! - [`crate::drawn`]: the document that is made of pieces.
 
 mod back;
@@ -23,6 +25,7 @@ mod pattern_reader;
 mod pattern_writer;
 mod piece;
 mod plain;
+mod reading;
 mod region;
 mod scale;
 mod scan;
@@ -30,8 +33,6 @@ mod shape;
 mod style;
 mod viewport;
 
-#[cfg(test)]
-mod tests;
-
-pub(crate) use pattern_reader::{SvgReading, read_svg};
+pub(crate) use pattern_reader::read_svg;
 pub(crate) use pattern_writer::write_svg;
+pub(crate) use reading::SvgReading;

@@ -3,6 +3,7 @@
 use super::back::written;
 use super::drawing::Drawing;
 use super::piece::SvgPiece;
+use super::reading::{SvgReading, sew_line_guess};
 use super::region::Region;
 use super::scale::Scale;
 use super::scan::{is_freesewing, scan};
@@ -11,21 +12,11 @@ use crate::drawn::builder::document;
 use crate::drawn::piece::DrawnPattern;
 use crate::native::Fitting;
 use crate::xml::Xml;
-use crate::{FormatError, Guess, Loss, ReadOption, ReadOptions};
-use toile_pattern::{DisplayUnit, Pattern};
+use crate::{FormatError, Guess, Loss, ReadOptions};
+use toile_pattern::DisplayUnit;
 
 /// Largest file (bytes).
 const MAX_BYTES: usize = 64 << 20;
-
-/// A pattern that was read.
-#[derive(Debug)]
-pub(crate) struct SvgReading {
-    pub pattern: Pattern,
-    pub fitting: Fitting,
-    pub guesses: Vec<Guess>,
-    pub losses: Vec<Loss>,
-    pub notes: Vec<String>,
-}
 
 /// Reads a pattern.
 ///
@@ -104,17 +95,6 @@ fn largest(pieces: &[SvgPiece]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// What is taken for the sew line of pieces that have none.
-fn sew_line_guess(pieces: &[SvgPiece], options: &ReadOptions) -> Option<Guess> {
-    let without = pieces.iter().filter(|piece| piece.sew.is_none()).count();
-    (without > 0 && options.allowance_inside.is_none()).then(|| Guess {
-        what: "sew line",
-        chosen: "the outline with no allowance".to_owned(),
-        because: format!("{without} of {} pieces have one line only", pieces.len()),
-        option: ReadOption::Inside,
-    })
-}
-
 /// The refusal of a drawing without a closed line.
 fn nothing(drawing: &Drawing) -> FormatError {
     match drawing.lines.is_empty() {
@@ -132,7 +112,7 @@ fn nothing(drawing: &Drawing) -> FormatError {
 }
 
 /// What the drawing holds that is no line of a pattern.
-pub(super) fn left_out(drawing: &Drawing) -> Vec<Loss> {
+fn left_out(drawing: &Drawing) -> Vec<Loss> {
     let all = drawing.left_out.iter();
     let why = |what: &str| match what {
         "scripts" => "they are never run",

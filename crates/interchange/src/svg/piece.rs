@@ -73,7 +73,7 @@ impl SvgPiece {
             (None, None) => (DrawnLine::default(), None),
         };
         let mut outline = whole(outline);
-        let fold = fold.map(|ends| on_outline(&outline, ends).unwrap_or(ends));
+        let fold = fold.map(|ends| folded(&mut outline, ends).unwrap_or(ends));
         if outline.area(0) < 0.0 {
             outline.reverse();
         }
@@ -149,20 +149,30 @@ fn told_curves(line: &mut DrawnLine) {
         is_inner && is_straight(before) && is_straight(k) && is_turn
     };
     let smooth: Vec<bool> = (0..count).map(is_smooth).collect();
-    let mut k = 0;
-    while k < count {
-        let run = smooth[k..].iter().take_while(|smooth| **smooth).count();
-        if run >= MIN_TURNS && k > 0 {
+    line.ways.resize(count, Way::Straight);
+    // Runs are counted from a vertex that is no part of one; a line without such is a curve all round.
+    let Some(start) = smooth.iter().position(|smooth| !smooth) else {
+        if count > MIN_TURNS {
+            line.ways.fill(Way::Chord);
+        }
+        return;
+    };
+    let mut k = start + 1;
+    while k < start + count {
+        let rest = (k..start + count).take_while(|k| smooth[k % count]);
+        let run = rest.count();
+        if run >= MIN_TURNS {
             for way in k - 1..k + run {
-                line.ways[way] = Way::Chord;
+                line.ways[way % count] = Way::Chord;
             }
         }
-        k += run.max(1);
+        k += run + 1;
     }
 }
 
-/// The ends of the straight stretch of an outline on which two places lie; `None` if there is none.
-fn on_outline(outline: &DrawnLine, [a, b]: [Vec2; 2]) -> Option<[Vec2; 2]> {
+/// The vertices at the ends of the straight stretch of an outline on which the middle of two places lies, the
+/// second one counted on beyond the last; `None` if there is none.
+fn stretch(outline: &DrawnLine, [a, b]: [Vec2; 2]) -> Option<[usize; 2]> {
     let points = outline.in_size(0);
     let count = points.len();
     let along = b - a;
@@ -184,8 +194,36 @@ fn on_outline(outline: &DrawnLine, [a, b]: [Vec2; 2]) -> Option<[Vec2; 2]> {
     let back = (1..count)
         .take_while(|step| is_on(first + count - step))
         .count();
-    let ends = [first + count - back, first + on + 1];
-    Some(ends.map(|k| points[k % count]))
+    let from = (first + count - back) % count;
+    Some([from, from + (back + on + 1).min(count - 1)])
+}
+
+/// The places of both ends of the stretch of an outline on which a fold lies, between which the outline then has
+/// no vertices.
+fn folded(outline: &mut DrawnLine, ends: [Vec2; 2]) -> Option<[Vec2; 2]> {
+    let [from, to] = stretch(outline, ends)?;
+    let count = outline.len();
+    let found = [from, to].map(|k| outline.in_size(0)[k % count]);
+    let inner: Vec<usize> = (from + 1..to).map(|k| k % count).collect();
+    let mut k = 0;
+    outline.ways.resize(count, Way::Straight);
+    outline.ways.retain(|_| {
+        k += 1;
+        !inner.contains(&(k - 1))
+    });
+    let mut k = 0;
+    outline.by_size[0].retain(|_| {
+        k += 1;
+        !inner.contains(&(k - 1))
+    });
+    if !outline.is_corner.is_empty() {
+        let mut k = 0;
+        outline.is_corner.retain(|_| {
+            k += 1;
+            !inner.contains(&(k - 1))
+        });
+    }
+    Some(found)
 }
 
 /// A sew line at a distance (m) inside a cut line, but on it along the fold; `None` if too little is left.
@@ -194,15 +232,13 @@ fn moved_in(cut: &DrawnLine, fold: Option<[Vec2; 2]>, by: f64) -> Option<DrawnLi
     if cut.area(0) < 0.0 {
         cut.reverse();
     }
+    let count = cut.len();
+    let fold = fold.and_then(|ends| stretch(&cut, ends));
     let is_fold = |k: usize| {
-        let count = cut.len();
-        let ends = [cut.in_size(0)[k % count], cut.in_size(0)[(k + 1) % count]];
-        fold.and_then(|fold| on_outline(&cut, fold))
-            .is_some_and(|[a, b]| {
-                let along = b - a;
-                let off = |p: &Vec2| (along.perp(&(p - a)) / along.norm()).abs() <= ON_VERTEX;
-                !matches!(cut.way(k), Way::Cubic(_)) && ends.iter().all(off)
-            })
+        fold.is_some_and(|[from, to]| {
+            let on = from..to;
+            on.contains(&k) || on.contains(&(k + count))
+        })
     };
     let on_fold: Vec<bool> = (0..cut.len()).map(is_fold).collect();
     let chords = cut.chords(0);

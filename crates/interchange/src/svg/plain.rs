@@ -221,6 +221,8 @@ fn own_lines(drawing: &Drawing, gap: f64) -> Vec<Own> {
             false => all.extend(lines),
         }
     }
+    // The order of the file.
+    all.sort_by_key(|line| line.element);
     all
 }
 

@@ -1,1 +1,0 @@
-//! Drawings read, patterns written and read back.
