@@ -107,12 +107,13 @@ fn shoulder(build: &mut Build, node: Node<'_, '_>) -> Made {
     let line = line_ends(build, node, ["p1Line", "p2Line"])?;
     let centre = build.point(node, "pShoulder")?;
     let distance = build.number(node, "length", LENGTH)?;
-    let end = line[1];
-    if distance.value < (end.at - centre.at).norm() {
+    let places = line.map(|end| end.at);
+    let total = (places[1] - places[0]).norm();
+    let reach = on_line(places, centre.at, distance.value);
+    let Some(reach) = reach.ok().filter(|[_, far]| *far >= total - 1e-9) else {
         let why = "its length does not reach beyond the end of the line, so it lies at that end";
-        return Ok(build.at_place_of(name(node), end, why));
-    }
-    let reach = on_line(line.map(|end| end.at), centre.at, distance.value)?;
+        return Ok(build.at_place_of(name(node), line[1], why));
+    };
     at_on_line(build, node, line, (centre, distance.number), (reach, true))
 }
 

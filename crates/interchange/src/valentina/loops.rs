@@ -12,6 +12,8 @@ const NEAR_ENDS: f64 = 5e-5;
 /// Difference within which two places are the same crossing (m).
 const SAME_PLACE: f64 = 1e-6;
 
+/// Area of a slit as a share of its squared length, at most (1).
+const SLIT: f64 = 1e-3;
 /// Largest number of stretches of an outline that is searched for loops.
 const MAX_STRETCHES: usize = 400;
 
@@ -29,11 +31,11 @@ struct Crossing {
 /// Leaves out the loops of a closed outline, and returns their number: from its first node on, each crossing
 /// with a later stretch is followed into that stretch.
 pub(super) fn leave_out_loops(build: &mut Build, outline: &mut Outline) -> usize {
-    let mut count = 0;
-    let mut from = 0;
     if outline.stretches.len() > MAX_STRETCHES {
-        return count;
+        return 0;
     }
+    let mut count = leave_out_slits(&mut outline.stretches);
+    let mut from = 0;
     while let Some(found) = first_crossing(&outline.stretches, from) {
         let [i, j] = found.stretches;
         let [Some(first), Some(second)] =
@@ -67,6 +69,33 @@ pub(super) fn leave_out_loops(build: &mut Build, outline: &mut Outline) -> usize
             .retain(|(corner, _)| corners.contains(corner));
     }
     count
+}
+
+/// Leaves out slits, in which an outline goes in and comes back to the same corner, and returns their number.
+fn leave_out_slits(stretches: &mut Vec<Stretch>) -> usize {
+    let mut count = 0;
+    let mut i = 0;
+    while i < stretches.len() {
+        let corner = stretches[i].ends[0].id;
+        let back = (i + 2..stretches.len())
+            .find(|&j| stretches[j].ends[0].id == corner && is_slit(&stretches[i..j]));
+        match back {
+            Some(j) => {
+                stretches.drain(i..j);
+                count += 1;
+            }
+            None => i += 1,
+        }
+    }
+    count
+}
+
+/// Whether stretches that close by themselves hold next to nothing between them.
+fn is_slit(stretches: &[Stretch]) -> bool {
+    let curves = stretches.iter().flat_map(|one| one.path.curves());
+    let area = curves.map(Piece::swept_area).sum::<f64>().abs() / 2.0;
+    let length: f64 = stretches.iter().map(|one| one.path.length()).sum();
+    area <= SLIT * length * length
 }
 
 /// The first crossing of a stretch with a later one, from a stretch on.

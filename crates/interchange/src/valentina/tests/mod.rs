@@ -147,12 +147,12 @@ fn strokes_of_the_compass_have_the_places_worked_out_by_hand() {
             [3.0 - 0.81_f64.sqrt(), 0.0],
         ),
         (
-            "<point type='shoulder' id='9' name='P' p1Line='1' p2Line='2' pShoulder='4' length='Line_O_X/2'/>",
-            [6.0, 0.0],
+            "<point type='shoulder' id='9' name='P' p1Line='1' p2Line='2' pShoulder='4' length='Line_O_X+80^0.5'/>",
+            [3.0 + ((10.0 + 80.0_f64.sqrt()).powi(2) - 16.0).sqrt(), 0.0],
         ),
         (
-            "<point type='triangle' id='9' name='P' axisP1='7' axisP2='5' firstPoint='1' secondPoint='2'/>",
-            [8.0, 4.0],
+            "<point type='triangle' id='9' name='P' axisP1='6' axisP2='4' firstPoint='1' secondPoint='2'/>",
+            [3.0, 21.0_f64.sqrt()],
         ),
         (
             "<point type='pointOfIntersectionCircles' id='9' name='P' c1Center='1' c2Center='2' c1Radius='6' c2Radius='8' crossPoint='2'/>",
@@ -231,7 +231,7 @@ fn points_on_arcs_have_the_places_worked_out_by_hand() {
         ("<point type='curveIntersectAxis' id='9' name='P' curve='5' basePoint='1' angle='225'/>".to_owned(), [5.0 * half, 5.0 * half]),
         ("<point type='endLine' id='9' name='P' basePoint='1' angle='Angle2Arc_O_5' length='RadiusArc_O_5*2'/>".to_owned(), [0.0, 10.0]),
         (format!("<arc type='arcWithLength' id='6' center='2' radius='5' angle1='90' length='{quarter}'/>\
-          <point type='cutArc' id='9' name='P' arc='6' length='Arc_X_6'/>"), [5.0, 0.0]),
+          <point type='cutArc' id='9' name='P' arc='6' length='Arc_X_6/2'/>"), [10.0 - 5.0 * half, 5.0 * half]),
         ("<arc type='simple' id='6' center='2' radius='Line_O_X/2' angle1='AngleLine_O_Y' angle2='AngleLine_O_Y-270'/>\
           <point type='cutArc' id='9' name='P' arc='6' length='Arc_X_6/2'/>".to_owned(), [10.0 - 5.0 * half, 5.0 * half]),
         ("<arc type='simple' id='6' center='2' radius='8' angle1='90' angle2='270'/>\

@@ -65,7 +65,7 @@ fn a_curve_is_cut_to_neighbours_on_it_and_left_out_where_it_runs_back() {
         ("second half", [o, m, on, y], quarter / 2.0, 0),
         ("half, reversed", [o, m, back, x], quarter / 2.0, 0),
         ("against the outline", [o, x, back, y], 50.0, 1),
-        ("half, against it", [o, m, on, x], 25.0 * 2.0_f64.sqrt(), 1),
+        ("half, against it", [o, m, on, x], 25.0, 1),
     ] {
         check(what, &piece(ARC, &nodes), wanted, losses);
     }

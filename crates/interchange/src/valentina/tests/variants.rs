@@ -16,9 +16,12 @@ fn check_told(tools: &str, at: [f64; 2]) {
     assert_eq!(told.count(), 1, "{tools}: {:?}", reading.losses);
 }
 
-/// A point M at a place (cm) in the file's directions.
+/// A point M at a place (cm).
 fn m(x: f64, y: f64) -> String {
-    format!("<point type='single' id='20' name='M' x='{x}' y='{}'/>", -y)
+    format!(
+        "<point type='endLine' id='120' name='Mx' basePoint='1' angle='0' length='{x}'/>\
+         <point type='endLine' id='20' name='M' basePoint='120' angle='90' length='{y}'/>"
+    )
 }
 
 #[test]
@@ -35,10 +38,11 @@ fn a_shoulder_reaches_beyond_the_end_of_its_line_or_stays_there() {
 #[test]
 fn a_triangle_has_its_corner_on_an_axis_that_passes_between_its_points() {
     let ends = |a: [f64; 2], b: [f64; 2]| {
-        format!(
-            "<point type='single' id='20' name='A' x='{}' y='{}'/><point type='single' id='21' name='B' x='{}' y='{}'/>",
-            a[0], -a[1], b[0], -b[1]
-        )
+        let second = m(b[0], b[1])
+            .replace("'120'", "'121'")
+            .replace("'20'", "'21'");
+        let second = second.replace("'Mx'", "'Nx'").replace("'M'", "'N'");
+        format!("{}{second}", m(a[0], a[1]))
     };
     let tool = "<point type='triangle' id='9' name='P' axisP1='1' axisP2='2' firstPoint='20' secondPoint='21'/>";
     let across = ends([3.0, 4.0], [7.0, -2.0]);
