@@ -1,29 +1,42 @@
-//! A surface of a mesh file flattened to a panel: pattern, report and strain map.
+//! A surface flattened to a panel: pattern, report and strain map.
 //!
 //! # Decided with
-//! - [`toile_flatten::flatten`]: the shape of least energy, darts;
+//! - [`toile_flatten::flatten`], [`toile_flatten::flatten_surface`]: the shape of least energy, darts; of a whole mesh, of a
+//!   region of one;
+//! - [`crate::flattening`] (`surface.rs`, `loop_file.rs`): meshes and bodies; places on them;
 //! - [`crate::flattening`] (`panel.rs`): the panel as a document;
 //! - [`crate::mesh_file`], [`crate::fabrics`]: meshes and fabrics of files.
 
+mod loop_file;
 mod panel;
+mod surface;
 
-use crate::mesh_file::open_mesh;
 use crate::output::cannot;
+use crate::product::body_obj;
 use crate::tools::check_ending;
 use crate::{SessionError, fabrics};
+use loop_file::open_loop;
 use panel::panel_pattern;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use toile_drape::MaterialLaws;
 use toile_fabric::Material;
-use toile_flatten::{FlattenError, Flattened, Options, flatten, panel_outline};
+use toile_flatten::{
+    FlattenError, Flattened, Options, SurfaceRegion, cut_out, flatten, flatten_surface,
+    panel_outline,
+};
 use toile_geometry::{TriangleMesh, Vec3};
-use toile_interchange::{FormatError, write_all_atomically, write_document};
+use toile_interchange::{FormatError, write_all_atomically, write_document, write_obj};
 use toile_pattern::{Fabric, Pattern};
 use toile_picture::{ColourMap, ColourScale, Finish, Legend, Paint, Scene, Sheet, Surface, View};
 
+pub use surface::SurfaceSource;
+
 /// Largest distance of the panel's curves from the vertices of the outline (m).
 pub const TOLERANCE: f64 = 1e-4;
+
+/// Distance of a place from the surface that is not told (m).
+const NEAR: f64 = 1e-3;
 
 /// Largest ease of a surface (m).
 pub const MAX_EASE: f64 = 0.5;
@@ -41,6 +54,10 @@ pub struct FlattenOptions {
     pub darts: usize,
     /// Distance by which the surface is moved out to its front (m).
     pub ease: f64,
+    /// File of a loop round the region to flatten; `None`: the whole surface.
+    pub loop_file: Option<PathBuf>,
+    /// Length of the edges that a region is meshed with (m); `None`: one that suits its size.
+    pub edge: Option<f64>,
 }
 
 /// A dart of the report.
@@ -63,8 +80,10 @@ pub struct FlattenReport {
     pub fabric: String,
     /// Triangles of the surface.
     pub triangles: usize,
-    /// Area of the surface (m2).
+    /// Area of the surface, moved out by the ease (m2).
     pub surface_area_m2: f64,
+    /// Length of the edges that the region of a loop was meshed with (m).
+    pub edge_m: Option<f64>,
     /// Area of the panel (m2).
     pub panel_area_m2: f64,
     /// Energy of the fabric on the surface (J).
@@ -89,12 +108,14 @@ pub struct FlattenReport {
     pub notes: Vec<String>,
 }
 
-/// Flattens the surface of a mesh file to a panel, and writes it as a pattern, with a report and a strain map beside it.
+/// Flattens a surface, or the region of it within a loop, to a panel, and writes it as a pattern, with a report and a
+/// strain map beside it; of a region the surface, too.
 ///
 /// # Errors
-/// The mesh cannot be read or is no disk, a number or the fabric cannot be used, or a file cannot be written.
-pub fn flatten_mesh(
-    mesh: &Path,
+/// The surface or the loop cannot be read, the region is no disk, a number or the fabric cannot be used, or a file cannot be
+/// written.
+pub fn flatten_to_panel(
+    source: &SurfaceSource,
     options: &FlattenOptions,
     to: &Path,
 ) -> Result<FlattenReport, SessionError> {
@@ -103,22 +124,47 @@ pub fn flatten_mesh(
         &[".toile.json"],
         "a panel is written as a pattern, NAME.toile.json",
     )?;
-    let opened = open_mesh(mesh)?;
-    let mut notes = opened.notes;
+    check_ease(options.ease)?;
+    let opened = source.open()?;
+    let mut notes = opened.notes.clone();
     let fabric = chosen_fabric(options.fabric.as_deref(), &mut notes)?;
     let name = to.file_name().unwrap_or_default().to_string_lossy();
     let stem = name[..name.len() - ".toile.json".len()].to_owned();
-    let surface = moved_out(&opened.mesh, options.ease)?;
-    let flat = flattened(&surface, options, &fabric.material, mesh, &mut notes)?;
+    let target = match &options.loop_file {
+        None => Target::Whole(moved_out(&opened.mesh, options.ease)),
+        Some(path) => {
+            let (asked, found) = open_loop(path, opened.mannequin.as_ref())?;
+            notes.extend(found);
+            let region = cut_out(&opened.mesh, &asked)
+                .map_err(|error| format_error(path, "the loop", &error.to_string()))?;
+            if region.farthest > NEAR {
+                notes.push(format!(
+                    "a place of the loop was {:.1} mm off the surface; its nearest point was taken",
+                    region.farthest * 1e3
+                ));
+            }
+            let moved = region.moved_out(options.ease);
+            let edge = options.edge.unwrap_or_else(|| moved.default_edge());
+            Target::Region(Box::new(moved), edge)
+        }
+    };
+    let place = match (&options.loop_file, &target) {
+        (Some(path), Target::Region(..)) => path.clone(),
+        (Some(_) | None, _) => source.place(),
+    };
+    let flat = flattened(&target, options, &fabric.material, &place, &mut notes)?;
     let outline = panel_outline(&flat, TOLERANCE);
     let panel_name = if stem.is_empty() { "panel" } else { &stem };
     let pattern = panel_pattern(panel_name, fabric.clone(), &outline);
     let folder = to.parent().unwrap_or(Path::new("")).to_owned();
-    let names = [
+    let mut names = vec![
         name.clone().into_owned(),
         format!("{stem}-flatten.json"),
         format!("{stem}-strain.png"),
     ];
+    if matches!(target, Target::Region(..)) {
+        names.push(format!("{stem}-surface.obj"));
+    }
     let places = &flat.places;
     let panel_area: f64 = (flat.region.mesh().triangles.iter())
         .map(|t| {
@@ -146,6 +192,10 @@ pub fn flatten_mesh(
         fabric: fabric.name.clone(),
         triangles: flat.region.mesh().triangles.len(),
         surface_area_m2: flat.region.area(),
+        edge_m: match &target {
+            Target::Region(_, edge) => Some(*edge),
+            Target::Whole(_) => None,
+        },
         panel_area_m2: panel_area,
         energy_j: flat.minimum.energy,
         stretch_99: flat.strain,
@@ -168,12 +218,16 @@ pub fn flatten_mesh(
     let words = serde_json::to_string_pretty(&report)
         .map_err(|error| FormatError::new("the report", error.to_string(), "report this fault"))
         .map_err(cannot("the report"))?;
-    let [pattern_name, report_name, picture_name] = names;
-    let files = [
-        (pattern_name, document.into_bytes()),
-        (report_name, words.into_bytes()),
-        (picture_name, strain_map(&flat, options.strain)?),
+    let mut contents = vec![
+        document.into_bytes(),
+        words.into_bytes(),
+        strain_map(&flat, options.strain)?,
     ];
+    if matches!(target, Target::Region(..)) {
+        let obj = write_obj(&body_obj(flat.region.mesh())).map_err(cannot("the surface"))?;
+        contents.push(obj.into_bytes());
+    }
+    let files: Vec<(String, Vec<u8>)> = names.into_iter().zip(contents).collect();
     write_all_atomically(&folder, &files)?;
     Ok(report)
 }
@@ -192,61 +246,81 @@ fn chosen_fabric(asked: Option<&str>, notes: &mut Vec<String>) -> Result<Fabric,
         })
 }
 
-/// The surface with every vertex moved along its normal.
-fn moved_out(mesh: &TriangleMesh, ease: f64) -> Result<TriangleMesh, SessionError> {
-    if !ease.is_finite() || ease.abs() > MAX_EASE {
-        return Err(SessionError::Number {
-            what: "the ease (m)",
-            value: ease,
-            hint: "give a length of at most 50cm",
-        });
+/// What is flattened.
+enum Target {
+    /// A whole mesh.
+    Whole(TriangleMesh),
+    /// A region, and the length of the edges it is meshed with (m).
+    Region(Box<SurfaceRegion>, f64),
+}
+
+fn check_ease(ease: f64) -> Result<(), SessionError> {
+    if ease.is_finite() && ease.abs() <= MAX_EASE {
+        return Ok(());
     }
+    Err(SessionError::Number {
+        what: "the ease (m)",
+        value: ease,
+        hint: "give a length of at most 50cm",
+    })
+}
+
+/// The surface with every vertex moved along its normal.
+fn moved_out(mesh: &TriangleMesh, ease: f64) -> TriangleMesh {
     let mut moved = mesh.clone();
     if ease != 0.0 && mesh.check().is_ok() {
         for (place, normal) in moved.positions.iter_mut().zip(mesh.vertex_normals()) {
             *place += normal * ease;
         }
     }
-    Ok(moved)
+    moved
 }
 
 fn flattened(
-    surface: &TriangleMesh,
+    target: &Target,
     options: &FlattenOptions,
     material: &Material,
     path: &Path,
     notes: &mut Vec<String>,
 ) -> Result<Flattened, SessionError> {
-    let asked = |grain: Vec3| Options {
-        law: material.membrane(),
-        grain,
-        strain: options.strain,
-        darts: options.darts,
-        cuts: Vec::new(),
+    let asked = |grain: Vec3| {
+        let options = Options {
+            law: material.membrane(),
+            grain,
+            strain: options.strain,
+            darts: options.darts,
+            cuts: Vec::new(),
+        };
+        match target {
+            Target::Whole(mesh) => flatten(mesh, &options),
+            Target::Region(region, edge) => flatten_surface(region, *edge, &options),
+        }
     };
     let result = match options.grain {
-        Some([x, y, z]) => flatten(surface, &asked(Vec3::new(x, y, z))),
-        None => match flatten(surface, &asked(Vec3::y())) {
+        Some([x, y, z]) => asked(Vec3::new(x, y, z)),
+        None => match asked(Vec3::y()) {
             Err(FlattenError::Grain) => {
                 notes.push(
                     "the surface lies flat, so the grain runs along z; --grain says otherwise"
                         .to_owned(),
                 );
-                flatten(surface, &asked(Vec3::z()))
+                asked(Vec3::z())
             }
             result => result,
         },
     };
-    result.map_err(|error| {
-        let words = error.to_string();
-        let (what, hint) = words
-            .split_once("; ")
-            .unwrap_or((&words, "give another surface"));
-        SessionError::Format {
-            path: path.to_owned(),
-            error: FormatError::new("the surface", what, hint),
-        }
-    })
+    result.map_err(|error| format_error(path, "the surface", &error.to_string()))
+}
+
+/// An error of words with the remedy after a semicolon.
+fn format_error(path: &Path, place: &str, words: &str) -> SessionError {
+    let (what, hint) = words
+        .split_once("; ")
+        .unwrap_or((words, "give another surface"));
+    SessionError::Format {
+        path: path.to_owned(),
+        error: FormatError::new(place, what, hint),
+    }
 }
 
 /// Length of a dart along its left leg on the surface (m).
