@@ -126,6 +126,35 @@ pub fn losses(seed: u64, folder: &Path) -> Result<(), String> {
     State::of(&mut session)?.same(&first, &format!("{name}, seed {seed}, all undone"))
 }
 
+/// A pattern that ships after random deletions and changes of count, none of which leaves a fault: the garment
+/// can be made.
+///
+/// # Errors
+/// A command that is refused.
+pub fn sound_after_changes(seed: u64) -> Result<Arc<Pattern>, String> {
+    let mut random = Random(seed);
+    let (path, _) = SAMPLES[seed as usize % SAMPLES.len()];
+    let mut session = Session::new();
+    run(&mut session, Command::open(path))?;
+    for _ in 0..random.below(CHANGES) {
+        let Ok(edits) = changes(&session.evaluation(), &mut random) else {
+            continue;
+        };
+        let label = "Change".to_owned();
+        let before = session.revision();
+        if run(&mut session, Command::Edit { edits, label }).is_err()
+            || session.revision() == before
+        {
+            continue;
+        }
+        let found = session.diagnostics();
+        if found.iter().any(|one| one.severity == Severity::Error) {
+            run(&mut session, Command::Undo)?;
+        }
+    }
+    Ok(session.project().pattern.clone())
+}
+
 /// A deletion by a planner or a raw one, or a panel cut another number of times.
 fn changes(evaluation: &Evaluation, random: &mut Random) -> Result<Vec<Edit>, EditError> {
     let pattern = evaluation.pattern();

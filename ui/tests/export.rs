@@ -13,7 +13,7 @@ use toile_session::{Command, Export, ExportFormat, Quality, Session, Silent};
 use toile_ui::Beginning;
 
 /// Every box of the dialog with what it writes.
-const BOXES: [(&str, ExportFormat); 15] = [
+const BOXES: [(&str, ExportFormat); 19] = [
     ("GLB", ExportFormat::Glb),
     ("OBJ", ExportFormat::Obj),
     ("Picture of the garment", ExportFormat::Drape),
@@ -27,6 +27,10 @@ const BOXES: [(&str, ExportFormat); 15] = [
     ("Nesting problem JSON", ExportFormat::MarkerInstance),
     ("Pieces PDF", ExportFormat::PiecesPdf),
     ("Pieces SVG", ExportFormat::PiecesSvg),
+    ("GarmentCode", ExportFormat::PatternGarmentcode),
+    ("SVG", ExportFormat::PatternSvg),
+    ("DXF-AAMA", ExportFormat::PatternDxfAama),
+    ("DXF-ASTM", ExportFormat::PatternDxfAstm),
     ("Report", ExportFormat::Report),
     ("Journal and times", ExportFormat::Journal),
 ];
@@ -81,7 +85,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     let told = drafter.status();
     let verdict = "the garment hangs at rest";
     assert!(
-        told.contains("Exported 16 files") && told.contains(verdict),
+        told.contains("Exported 20 files") && told.contains(verdict),
         "{told}"
     );
 
@@ -107,7 +111,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     for files in [&mut window, &mut line] {
         assert!(files.remove("journal.jsonl").is_some());
     }
-    assert_eq!(window.len(), 14);
+    assert_eq!(window.len(), 18);
     for (name, bytes) in &line {
         assert!(window[name] == *bytes, "{name} differs");
     }
@@ -122,7 +126,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     drafter.key(Key::Enter);
     drafter.wait(|drafter| !exports(drafter));
     assert!(
-        drafter.status().contains("Exported 11 files"),
+        drafter.status().contains("Exported 15 files"),
         "{}",
         drafter.status()
     );

@@ -1,4 +1,4 @@
-//! Nine problems of drafting whose answers have closed forms, solved by tools alone: no answer is typed.
+//! Eleven problems of drafting whose answers have closed forms, solved by tools alone: no answer is typed.
 #![allow(clippy::unwrap_used)]
 
 mod drafter;
@@ -147,6 +147,85 @@ fn a_point_mirrored_across_the_diagonal() {
         drafter.click(drafter.part(&format!("Point {name} of draft")));
     }
     is_at(drafter.point("D"), 0.07, 0.31);
+}
+
+/// A compass of 5 cm about a point 3 cm above a line meets it 4 cm to either side: the pointer says which.
+#[test]
+fn a_compass_meets_a_line_on_the_side_of_the_pointer() {
+    let mut drafter = begun();
+    drafter.take("Line");
+    drafter.pair("0", "0");
+    drafter.pair("40", "0");
+    drafter.look();
+    drafter.take("Point");
+    drafter.pair("20", "3");
+    drafter.look();
+    let before = drafter.pattern();
+    for (aside, name, x) in [(0.3, "D", 0.24), (0.1, "E", 0.16)] {
+        drafter.take("Compass on line");
+        for name in ["A", "B", "C"] {
+            drafter.click(drafter.part(&format!("Point {name} of draft")));
+        }
+        drafter.hover(drafter.place(aside, 0.0));
+        drafter.typed("5");
+        is_at(drafter.point(name), x, 0.0);
+    }
+    // One that is too short is refused, with the field and a remedy; nothing is drawn.
+    let steps = drafter.steps();
+    drafter.take("Compass on line");
+    for name in ["A", "B", "C"] {
+        drafter.click(drafter.part(&format!("Point {name} of draft")));
+    }
+    drafter.hover(drafter.place(0.3, 0.0));
+    drafter.typed("2");
+    let fault = drafter.window.state().fault().unwrap_or_default();
+    assert!(
+        fault.starts_with("radius: ") && fault.contains("longer"),
+        "{fault}"
+    );
+    assert_eq!(drafter.steps(), steps);
+    drafter.take("Select");
+    for _ in 0..2 {
+        drafter.chord(egui::Modifiers::COMMAND, Key::Z);
+    }
+    assert!(drafter.pattern().says_the_same(&before));
+}
+
+/// 30 and 40 cm from points that are 50 cm apart: a right angle, on the side of the pointer.
+#[test]
+fn two_compasses_meet_on_the_side_of_the_pointer() {
+    let mut drafter = begun();
+    drafter.take("Line");
+    drafter.pair("0", "0");
+    drafter.pair("50", "0");
+    drafter.look();
+    let before = drafter.pattern();
+    for (aside, name, y) in [(0.1, "C", 0.24), (-0.1, "D", -0.24)] {
+        drafter.take("Two compasses");
+        for name in ["A", "B"] {
+            drafter.click(drafter.part(&format!("Point {name} of draft")));
+        }
+        drafter.typed("30");
+        drafter.hover(drafter.place(0.2, aside));
+        drafter.typed("40");
+        is_at(drafter.point(name), 0.18, y);
+        drafter.look();
+    }
+    // Two that do not meet are refused.
+    drafter.take("Two compasses");
+    for name in ["A", "B"] {
+        drafter.click(drafter.part(&format!("Point {name} of draft")));
+    }
+    drafter.typed("30");
+    drafter.hover(drafter.place(0.2, 0.1));
+    drafter.typed("10");
+    let fault = drafter.window.state().fault().unwrap_or_default();
+    assert!(fault.contains("no point has both distances"), "{fault}");
+    drafter.take("Select");
+    for _ in 0..2 {
+        drafter.chord(egui::Modifiers::COMMAND, Key::Z);
+    }
+    assert!(drafter.pattern().says_the_same(&before));
 }
 
 /// A third of the way along a quarter of a circle lies at 30 degrees.

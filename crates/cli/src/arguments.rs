@@ -317,7 +317,7 @@ pub struct Make {
     pub origin: PanelOrigin,
     /// What to write, and only that; what it takes is made first: glb, obj, drape, fit (pictures), marker-svg,
     /// marker-json, marker-dxf, marker-pdf, marker-report, marker-plt, marker-instance, pieces-pdf (A4), pieces-svg
-    /// (one page), report, journal. Default: of what the command makes glb, obj, drape, fit, marker-svg, marker-json, report
+    /// (one page), pattern-garmentcode, pattern-svg, pattern-dxf-aama, pattern-dxf-astm (the pattern, in all sizes), report, journal. Default: of what the command makes glb, obj, drape, fit, marker-svg, marker-json, report
     /// and journal.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = export_format)]
     pub formats: Vec<ExportFormat>,

@@ -3,7 +3,9 @@
 use crate::arguments::Convert;
 use crate::output::{Failure, Output};
 use serde_json::{Value, json};
-use toile_session::{Choice, ConvertOptions, Converted, SizeSelection, convert as convert_file};
+use toile_session::{
+    Choice, ConvertOptions, Converted, SizeSelection, WrittenPattern, convert as convert_file,
+};
 
 /// A pattern in another format, with what was guessed in reading and lost in writing.
 pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
@@ -17,11 +19,14 @@ pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
         },
     };
     let Converted {
-        files,
         read,
         notes,
-        format,
-        losses,
+        written:
+            WrittenPattern {
+                files,
+                format,
+                losses,
+            },
     } = convert_file(&convert.input, &convert.output, &options)
         .map_err(|error| Failure::from(error).about(&convert.input))?;
     for note in &notes {

@@ -19,8 +19,12 @@ pub enum FileKind {
     Glb,
     /// DXF, text or binary.
     Dxf,
-    /// SVG.
+    /// A drawing in SVG.
     Svg,
+    /// A marker of this program drawn in SVG.
+    DrawnMarker,
+    /// A print of pieces by this program in SVG.
+    Print,
     /// A page of HTML.
     Html,
     /// HPGL, the language of plotters.
@@ -80,6 +84,8 @@ impl FileKind {
             Self::Glb => "a glTF binary",
             Self::Dxf => "a DXF drawing",
             Self::Svg => "an SVG drawing",
+            Self::DrawnMarker => "a marker that `toile nest` drew",
+            Self::Print => "a print of pieces that `toile print` drew",
             Self::Html => "a web page",
             Self::Hpgl => "a plotter file (HPGL)",
             Self::ValentinaPattern => "a pattern of Valentina (.val)",

@@ -56,6 +56,7 @@ mod scene_material;
 mod scene_motion;
 mod settings_reader;
 mod shown;
+mod svg;
 mod svg_text;
 mod valentina;
 mod x3d;
@@ -72,8 +73,8 @@ pub use character_json::{read_character, write_character};
 pub use checkpoint::{CheckpointFormat, read_checkpoint, write_checkpoint};
 pub use error::{FileError, FormatError, read_text};
 pub use exchange::{
-    Companion, Content, Format, Guess, Loss, ReadOptions, Reading, SizedDraft, WriteSource,
-    Writing, Written, companion_names, read, write,
+    Companion, Content, Format, Guess, Loss, ReadOption, ReadOptions, Reading, SizedDraft,
+    WriteSource, Writing, Written, companion_names, contents, format_tables, read, write,
 };
 pub use fabric_file::{FabricFile, read_fabric};
 pub use fabric_test::{FabricTest, read_fabric_test};

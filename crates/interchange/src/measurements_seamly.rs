@@ -8,9 +8,9 @@ use roxmltree::Node;
 use toile_measure::{Measurements, SEAMLY, translated};
 
 /// Difference in size for which the table gives a measurement's `size_increase` (m).
-const SIZE_STEP: f64 = 0.02;
+pub(crate) const SIZE_STEP: f64 = 0.02;
 /// Difference in body height for which the table gives a measurement's `height_increase` (m).
-const HEIGHT_STEP: f64 = 0.06;
+pub(crate) const HEIGHT_STEP: f64 = 0.06;
 /// Smallest and largest size that Seamly and Valentina offer (m).
 const SIZES: [f64; 2] = [0.22, 0.72];
 /// Smallest and largest body height that Seamly and Valentina offer (m).
@@ -87,6 +87,19 @@ pub(crate) struct SeamlyRows {
     pub metres: f64,
     /// Names and numbers in the file's units, also those that are zero.
     pub rows: Vec<(String, f64)>,
+}
+
+/// Base size and base height that a table for several sizes declares (m). `None`: the table is of one body,
+/// or gives no steps from size to size.
+///
+/// # Errors
+/// Those of [`read_seamly`].
+pub(crate) fn seamly_base(text: &str) -> Result<Option<[f64; 2]>, FormatError> {
+    let xml = Xml::read(text, "save the file again, or correct the line")?;
+    let sizes = Sizes::of(&xml, unit_of(&xml)?)?;
+    Ok(sizes
+        .filter(|sizes| !sizes.inches)
+        .and_then(|sizes| sizes.base))
 }
 
 /// The rows of a measurement file in the chosen size, with the file's names and units.

@@ -40,6 +40,7 @@ impl FileKind {
             Self::Bvh | Self::X3d => Some("`toile body --motion` takes it"),
             Self::Pattern
             | Self::GarmentCode
+            | Self::Svg
             | Self::Dxf
             | Self::ValentinaPattern
             | Self::SeamlyPattern => Some("`toile make`, `check` and `nest` take it"),
@@ -57,7 +58,8 @@ impl FileKind {
             | Self::PostScript
             | Self::Archive
             | Self::Glb
-            | Self::Svg
+            | Self::DrawnMarker
+            | Self::Print
             | Self::Html
             | Self::Hpgl
             | Self::FreeSewingPattern
@@ -73,6 +75,9 @@ impl FileKind {
             Self::Empty => Some("it holds nothing: it may not have been saved"),
             Self::Utf16 => Some("save it as UTF-8"),
             Self::Archive => Some("unpack it first"),
+            Self::DrawnMarker | Self::Print => {
+                Some("give the pattern that it was made of, which holds more than its drawing")
+            }
             Self::Picture
             | Self::Pdf
             | Self::PostScript
@@ -232,7 +237,7 @@ fn of_magic(bytes: &[u8]) -> Option<FileKind> {
 /// Recognises a kind of XML by the root element.
 fn of_xml(text: &str) -> FileKind {
     match root_element(text) {
-        Some("svg") => FileKind::Svg,
+        Some("svg") => of_svg(text),
         Some("html") => FileKind::Html,
         Some("X3D") => FileKind::X3d,
         Some("vit" | "vst" | "smis" | "smms") => FileKind::Measurements,
@@ -240,6 +245,18 @@ fn of_xml(text: &str) -> FileKind {
         Some("pattern") if text.contains("Seamly2D") => FileKind::SeamlyPattern,
         Some("pattern") => FileKind::ValentinaPattern,
         _ => FileKind::OtherXml,
+    }
+}
+
+/// Recognises drawings of this program that are no patterns by the names of their first layers.
+fn of_svg(text: &str) -> FileKind {
+    const MARKER: &str = "<g id=\"fabric\" inkscape:groupmode=\"layer\" inkscape:label=\"Fabric\"";
+    const PRINT: &str =
+        "<g id=\"all-sizes\" inkscape:groupmode=\"layer\" inkscape:label=\"All sizes\"";
+    match (text.contains(MARKER), text.contains(PRINT)) {
+        (true, _) => FileKind::DrawnMarker,
+        (false, true) => FileKind::Print,
+        (false, false) => FileKind::Svg,
     }
 }
 

@@ -185,7 +185,11 @@ fn a_closed_outline_in_millimetres_is_a_panel() {
     assert_eq!(panel.lines[0].edges.len(), 4);
     assert_near(area(&draft_of(pattern, None)), 0.24);
     // The file says nothing of a sew line.
-    let guesses: Vec<&str> = reading.guesses.iter().map(|guess| guess.option).collect();
+    let guesses: Vec<&str> = reading
+        .guesses
+        .iter()
+        .map(|guess| guess.option.word())
+        .collect();
     assert_eq!(guesses, ["--inside"]);
 }
 
@@ -243,7 +247,10 @@ fn inches_are_read_and_a_wrong_unit_is_guessed() {
         .iter()
         .find(|guess| guess.what == "unit")
         .unwrap();
-    assert_eq!((guess.chosen.as_str(), guess.option), ("cm", "--unit"));
+    assert_eq!(
+        (guess.chosen.as_str(), guess.option.word()),
+        ("cm", "--unit")
+    );
     let asked = ReadOptions {
         unit: Some(toile_pattern::DisplayUnit::Inch),
         ..ReadOptions::default()

@@ -19,7 +19,7 @@
 //! `weight`; a command that opens a pattern in `execute`; `follow`.
 
 use crate::interactive_run::read_inputs;
-use crate::{Export, OpenOptions, PanelOrigin, PastStep, Quality};
+use crate::{Export, OpenOptions, PanelOrigin, PastStep, Quality, WriteOptions};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use strum::IntoStaticStr;
@@ -74,6 +74,14 @@ pub enum Command {
     SavePattern {
         /// The file.
         path: PathBuf,
+    },
+    /// Writes the pattern in a format of another program. The project keeps its own file.
+    WritePattern {
+        /// The file.
+        path: PathBuf,
+        /// Format and sizes.
+        #[serde(flatten)]
+        options: WriteOptions,
     },
     /// Changes the pattern. Either all edits are made or none.
     Edit {
@@ -209,7 +217,9 @@ impl Command {
     /// The files that the command names.
     fn files(&mut self) -> NamedFiles<'_> {
         match self {
-            Self::SavePattern { path } | Self::SaveBody { path } => NamedFiles::Output(path),
+            Self::SavePattern { path }
+            | Self::WritePattern { path, .. }
+            | Self::SaveBody { path } => NamedFiles::Output(path),
             Self::Export(export) => NamedFiles::Output(&mut export.dir),
             Self::OpenPattern { path, options } => NamedFiles::Pattern(path, &mut options.with),
             Self::SetBody { measurements, .. } => NamedFiles::Input(measurements.as_mut()),
@@ -280,6 +290,7 @@ impl Command {
             | Self::NewPattern { .. }
             | Self::RestorePattern { .. }
             | Self::SavePattern { .. }
+            | Self::WritePattern { .. }
             | Self::Edit { .. }
             | Self::Undo
             | Self::Redo

@@ -2,19 +2,16 @@
 //!
 //! # Decided with
 //! - [`crate::open::open_pattern_from`]: the pattern read, with what the file leaves open;
-//! - [`toile_interchange::write`], [`toile_interchange::Format`]: formats that are written;
-//! - [`crate::tools::sound_draft`]: faults that are refused.
+//! - [`crate::write_pattern`]: the pattern written.
 //!
 //! Options: crate `cli`, `convert_command.rs`.
 
 use crate::event::FoundInFile;
-use crate::fitting::{OpenedProject, fitting_beside};
-use crate::output::cannot;
-use crate::sizes::selected;
-use crate::tools::{check_ending, sound_draft};
+use crate::fitting::OpenedProject;
+use crate::write_pattern::{WrittenPattern, format_of, write_pattern};
 use crate::{OpenOptions, PanelOrigin, Project, SessionError};
-use std::path::{Path, PathBuf};
-use toile_interchange::{Format, Loss, SizedDraft, WriteSource, write, write_all_atomically};
+use std::path::Path;
+use toile_interchange::Format;
 use toile_pattern::SizeSelection;
 
 /// How a pattern is converted.
@@ -33,16 +30,12 @@ pub struct ConvertOptions {
 /// A pattern that was converted.
 #[derive(Clone, Debug)]
 pub struct Converted {
-    /// Files that were written, the pattern first.
-    pub files: Vec<PathBuf>,
     /// Format of the input, with what reading it found out.
     pub read: FoundInFile,
     /// Notes on the reading in words, guesses and losses too.
     pub notes: Vec<String>,
-    /// Format of the output.
-    pub format: Format,
-    /// Contents that the output has no place for.
-    pub losses: Vec<Loss>,
+    /// What was written.
+    pub written: WrittenPattern,
 }
 
 /// Reads a pattern and writes it in a format. Panels that the input places in space, round an origin, are
@@ -62,85 +55,9 @@ pub fn convert(
         notes,
         found,
     } = Project::open_from(from, options.origin, &options.open)?;
-    let drafts = drafts(&project, format, options.sizes.as_ref())?;
-    let fitting = fitting_beside(&project, to).map_err(cannot("the pattern"))?;
-    let source = WriteSource {
-        pattern: &project.pattern,
-        fitting: &fitting,
-        drafts: &drafts,
-    };
-    let writing = write(&source, format).map_err(cannot("the pattern"))?;
-    let folder = to.parent().unwrap_or(Path::new(""));
-    let name = to.file_name().unwrap_or_default().to_string_lossy();
-    let stem = &name[..name.len() - format.ending_of(&name).len()];
-    let named = writing.files.iter().enumerate().map(|(k, file)| {
-        let own = match k {
-            0 => name.clone().into_owned(),
-            _ => format!("{stem}{}", file.ending),
-        };
-        (own, &file.bytes)
-    });
-    let named: Vec<(String, &Vec<u8>)> = named.collect();
-    write_all_atomically(folder, &named)?;
     Ok(Converted {
-        files: named.iter().map(|(name, _)| folder.join(name)).collect(),
         read: found,
         notes,
-        format,
-        losses: writing.losses,
+        written: write_pattern(&project, to, format, options.sizes.as_ref())?,
     })
-}
-
-/// The format of an output: as asked for, else by its name.
-fn format_of(to: &Path, asked: Option<Format>) -> Result<Format, SessionError> {
-    let remedy = format!(
-        "patterns are written as {}; `toile nest --write` writes markers as svg, dxf, pdf and plt",
-        Format::written_words()
-    );
-    let name = to.file_name().unwrap_or_default().to_string_lossy();
-    let endings = match asked {
-        Some(format) => format.endings(),
-        None => Format::all_endings(),
-    };
-    check_ending(to, &endings, &remedy)?;
-    Ok(asked.or(Format::of_name(&name)).unwrap_or(Format::Native))
-}
-
-/// Drafts for a format that holds shapes, in the sizes asked for.
-fn drafts(
-    project: &Project,
-    format: Format,
-    sizes: Option<&SizeSelection>,
-) -> Result<Vec<SizedDraft>, SessionError> {
-    if !format.holds_shapes() {
-        return match sizes {
-            None => Ok(Vec::new()),
-            Some(_) => Err(SessionError::Conflict(format!(
-                "files of {} hold all sizes: leave --size and --all-sizes out",
-                format.title()
-            ))),
-        };
-    }
-    let asked = match sizes {
-        None => vec![(project.size.clone(), 1)],
-        Some(sizes) => selected(sizes, &project.pattern)?,
-    };
-    if asked.len() > 1 && !format.holds_sizes() {
-        return Err(SessionError::Conflict(format!(
-            "files of {} hold one size: name one with --size",
-            format.title()
-        )));
-    }
-    let in_size = |(size, _): (Option<String>, u32)| {
-        let sized = Project {
-            size,
-            ..project.clone()
-        };
-        sized.check_size()?;
-        Ok(SizedDraft {
-            size: sized.size_name().map(str::to_owned),
-            draft: sound_draft(&sized)?,
-        })
-    };
-    asked.into_iter().map(in_size).collect()
 }

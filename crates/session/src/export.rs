@@ -14,6 +14,7 @@
 
 use crate::drape::Drape;
 use crate::export_format::{Export, ExportFormat};
+use crate::fitting::fitting_anywhere;
 use crate::journal::{Entry, MAX_COMMANDS};
 use crate::journal_files::journal_beside;
 use crate::outfit::DraftedPart;
@@ -23,6 +24,7 @@ use crate::product::{garment_glb, garment_obj};
 use crate::report::Report;
 use crate::stored_marker::stored;
 use crate::watcher::{ProgressShare, report_progress};
+use crate::write_pattern::{named_files, written};
 use crate::{
     Command, Event, Paper, PrintOptions, Project, Session, SessionError, SizeSelection, Watcher,
     pictures, print_job,
@@ -259,9 +261,36 @@ impl Session {
             report.add_warnings(self.derived.assembly_notes.iter().cloned());
             report.add_warnings(drape.warnings.iter().cloned());
         }
+        self.pattern_files(&subject.formats, events, files)?;
         report_progress(watcher, "writing", 0.95, "report")?;
         if subject.formats.contains(&ExportFormat::Report) {
             files.push(("report.json".into(), report.to_json().into_bytes()));
+        }
+        Ok(())
+    }
+
+    /// Adds the pattern in the formats of other programs, in all sizes where one file holds them.
+    fn pattern_files(
+        &self,
+        formats: &[ExportFormat],
+        events: &mut Vec<Event>,
+        files: &mut Vec<File>,
+    ) -> Result<(), SessionError> {
+        for export in formats {
+            let Some(format) = export.of_pattern() else {
+                continue;
+            };
+            let has_sizes = !self.project.pattern.sizes.is_empty();
+            let sizes = (format.holds_sizes() && has_sizes).then_some(SizeSelection::All);
+            let fitting = fitting_anywhere(&self.project).map_err(cannot(export.file()))?;
+            let writing = written(&self.project, format, sizes.as_ref(), &fitting)?;
+            for (name, bytes) in named_files(export.file(), format, &writing) {
+                files.push((name, bytes.to_vec()));
+            }
+            let title = format.title();
+            let lost = writing.losses.iter();
+            let lost = lost.map(|loss| format!("{title} leaves out: {loss}"));
+            events.extend(Event::warnings(&lost.collect::<Vec<_>>()));
         }
         Ok(())
     }

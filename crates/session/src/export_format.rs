@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use strum::{EnumCount, IntoStaticStr, VariantArray};
+use toile_interchange::Format;
 use toile_marker::MarkerFormat;
+use toile_pattern::fields::Choice;
 
 /// Files to export, and the folder to write them to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -75,6 +77,14 @@ pub enum ExportFormat {
     PiecesPdf,
     /// `pieces.svg`: the pieces on one page at true size.
     PiecesSvg,
+    /// `pattern.json`: the pattern as GarmentCode.
+    PatternGarmentcode,
+    /// `pattern.svg`: the panels in layers, with the whole document in it.
+    PatternSvg,
+    /// `pattern-aama.dxf`: the pieces in all sizes as DXF-AAMA.
+    PatternDxfAama,
+    /// `pattern-astm.dxf`: the pieces in all sizes as DXF-ASTM.
+    PatternDxfAstm,
     /// `report.json`: what is exported, in numbers.
     Report,
     /// `journal.jsonl` and `timing.json`: the commands, and how long they took.
@@ -111,6 +121,10 @@ impl ExportFormat {
             Self::MarkerInstance => "marker-instance.json",
             Self::PiecesPdf => "pieces.pdf",
             Self::PiecesSvg => "pieces.svg",
+            Self::PatternGarmentcode => "pattern.json",
+            Self::PatternSvg => "pattern.svg",
+            Self::PatternDxfAama => "pattern-aama.dxf",
+            Self::PatternDxfAstm => "pattern-astm.dxf",
             Self::Report => "report.json",
             Self::Journal => "journal.jsonl",
         }
@@ -133,7 +147,11 @@ impl ExportFormat {
             | Self::MarkerPlt
             | Self::MarkerInstance
             | Self::PiecesPdf
-            | Self::PiecesSvg => false,
+            | Self::PiecesSvg
+            | Self::PatternGarmentcode
+            | Self::PatternSvg
+            | Self::PatternDxfAama
+            | Self::PatternDxfAstm => false,
         }
     }
 
@@ -163,9 +181,31 @@ impl ExportFormat {
             | Self::Fit
             | Self::PiecesPdf
             | Self::PiecesSvg
+            | Self::PatternGarmentcode
+            | Self::PatternSvg
+            | Self::PatternDxfAama
+            | Self::PatternDxfAstm
             | Self::Report
             | Self::Journal => None,
         }
+    }
+
+    /// The export that writes the pattern itself in a format; `None` for formats that are not written, and for
+    /// the native one, which is saved.
+    pub fn of_pattern_format(format: Format) -> Option<Self> {
+        match format {
+            Format::GarmentCode => Some(Self::PatternGarmentcode),
+            Format::Svg => Some(Self::PatternSvg),
+            Format::DxfAama => Some(Self::PatternDxfAama),
+            Format::DxfAstm => Some(Self::PatternDxfAstm),
+            Format::Native | Format::Valentina | Format::Seamly => None,
+        }
+    }
+
+    /// The format of a pattern that this export writes; `None` if it writes something else.
+    pub fn of_pattern(self) -> Option<Format> {
+        let mut all = Format::all().iter().copied();
+        all.find(|format| Self::of_pattern_format(*format) == Some(self))
     }
 }
 
@@ -182,6 +222,20 @@ mod tests {
             let same = ExportFormat::ALL.iter();
             let same = same.filter(|other| other.file() == format.file());
             assert_eq!(same.count(), 1, "{}", format.file());
+        }
+    }
+
+    #[test]
+    fn every_format_of_other_programs_that_is_written_is_an_export() {
+        for &format in Format::all() {
+            let export = ExportFormat::of_pattern_format(format);
+            let is_foreign = format.is_written() && format != Format::Native;
+            assert_eq!(export.is_some(), is_foreign, "{}", format.word());
+            assert!(export.is_none_or(|own| own.file().ends_with(format.ending())));
+            assert_eq!(
+                export.and_then(ExportFormat::of_pattern),
+                export.map(|_| format)
+            );
         }
     }
 }

@@ -74,6 +74,14 @@ pub(crate) fn fitting_beside(project: &Project, place: &Path) -> Result<Fitting,
     fitting_of(project, folder_of(Some(place)))
 }
 
+/// Fitting of a project's garment with absolute paths, for a file that may lie anywhere.
+///
+/// # Errors
+/// The name of a file that is worn or measured is not text.
+pub(crate) fn fitting_anywhere(project: &Project) -> Result<Fitting, FormatError> {
+    fitting_of(project, None)
+}
+
 /// Text of a project's file, with paths relative to the folder of `place`; absolute paths if `place` is
 /// `None`.
 ///

@@ -83,6 +83,8 @@ mod tools;
 mod verdict;
 mod watched_search;
 mod watcher;
+mod write_options;
+mod write_pattern;
 
 pub use batch::{
     BatchFolder, BatchRun, CheckArguments, Ended, Job, JobOutcome, JobResult, Limits, Part, Report,
@@ -111,8 +113,8 @@ pub use marker_file_check::{JudgedMarker, is_marker_file, judge_marker_file};
 pub use markers::{FoundMarker, MarkerSearch, kept_words, other_sizes_words};
 pub use nest_patterns::{is_nesting_instance, nest_instance, nest_patterns, open_marker_settings};
 pub use open::{
-    OpenOptions, SAMPLE, SAMPLES, open_mannequin, open_marker, open_measurements, open_pattern,
-    read_input, read_pattern_text,
+    FileUse, OpenOptions, SAMPLE, SAMPLES, file_use, open_mannequin, open_marker,
+    open_measurements, open_pattern, read_input, read_pattern_text,
 };
 pub use outfit::GarmentPart;
 pub use piece_facts::{
@@ -141,8 +143,8 @@ pub use toile_body::{
 pub use toile_cut::{CutList, CutListPiece, CutPiece, Drawing, Shrinkage, Stroke, StrokeKind};
 pub use toile_drape::{Aspect, Finding, Stage, Verdict};
 pub use toile_interchange::{
-    ExpectedKind, Format, Guess, Lines, Loss, MarkerSettings, Paper, ReadOptions, Reading, Shown,
-    SizeChoice, Tile, write_atomically,
+    ExpectedKind, Format, Guess, Lines, Loss, MarkerSettings, Paper, ReadOption, ReadOptions,
+    Reading, Shown, SizeChoice, Tile, write_atomically,
 };
 pub use toile_marker::{
     DocumentMarker, Found, GivenFlaw, LaidPiece, LetGo, MarkerError, MarkerFormat, MarkerState,
@@ -158,3 +160,5 @@ pub use tools::{
     measure_mesh, mesh_panels, stretch_body,
 };
 pub use watcher::{Silent, Watcher};
+pub use write_options::WriteOptions;
+pub use write_pattern::WrittenPattern;

@@ -15,8 +15,9 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use toile_body::Description;
 use toile_interchange::{
-    Companion, ExpectedKind, FileError, FormatError, MarkerFile, ReadOptions, Reading, SizeChoice,
-    companion_names, read, read_mannequin, read_marker_json, read_sized_measurements,
+    Companion, ExpectedKind, FileError, FileKind, Format, FormatError, MarkerFile, ReadOptions,
+    Reading, SizeChoice, companion_names, read, read_mannequin, read_marker_json,
+    read_sized_measurements,
 };
 use toile_measure::Measurements;
 
@@ -70,6 +71,33 @@ impl OpenOptions {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// Use of a file that is dropped on a window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileUse {
+    /// A pattern to open.
+    Pattern,
+    /// Measurements or a mannequin of the wearer.
+    Wearer,
+    /// A fabric to cut from.
+    Fabric,
+    /// A file of another kind.
+    Other,
+}
+
+/// Use of a file, by its content.
+///
+/// # Errors
+/// The file cannot be read.
+pub fn file_use(path: &Path) -> Result<FileUse, SessionError> {
+    let kind = FileKind::of(&read_file(path)?);
+    Ok(match kind {
+        Some(FileKind::Measurements | FileKind::Mannequin) => FileUse::Wearer,
+        Some(FileKind::Fabric) => FileUse::Fabric,
+        Some(kind) if Format::of_kind(kind).is_some() => FileUse::Pattern,
+        Some(_) | None => FileUse::Other,
+    })
 }
 
 /// Reads a pattern file. A pattern without a name is named after its file; panels that the file plainly

@@ -8,9 +8,10 @@ use crate::open::{OpenOptions, open_pattern_from, read_pattern_text};
 use crate::outfit::DraftedPart;
 use crate::output::cannot;
 use crate::watcher::{ProgressShare, report_progress};
+use crate::write_pattern::{format_of, write_pattern};
 use crate::{
     Assembled, BodyChoice, Command, Event, OtherGarment, PanelOrigin, PastStep, Project, Session,
-    SessionError, Watcher, WornGarment,
+    SessionError, Watcher, WornGarment, WriteOptions,
 };
 use std::fmt::Display;
 use std::path::Path;
@@ -32,6 +33,7 @@ impl Session {
             Command::OpenPattern { path, options } => self.open(path, options, watcher),
             Command::SetOrigin { origin } => self.set_origin(*origin),
             Command::SavePattern { path } => self.save(path, watcher),
+            Command::WritePattern { path, options } => self.write(path, options, watcher),
             Command::NewPattern { name } => self.start(name),
             Command::RestorePattern { text, source, past } => {
                 self.restore((text, past), source.as_deref())
@@ -228,6 +230,21 @@ impl Session {
                         .to_owned(),
             });
         }
+        Ok(events)
+    }
+
+    fn write(&self, path: &Path, options: &WriteOptions, watcher: &mut dyn Watcher) -> Outcome {
+        report_progress(watcher, "writing", 0.0, &path.display().to_string())?;
+        let format = format_of(path, options.format)?;
+        let sizes = options.sizes();
+        let written = write_pattern(&self.project, path, format, sizes.as_ref())?;
+        let title = format.title();
+        let lost = written.losses.iter();
+        let lost = lost.map(|loss| format!("{title} leaves out: {loss}"));
+        let mut events = vec![Event::FilesWritten {
+            paths: written.files,
+        }];
+        events.extend(Event::warnings(&lost.collect::<Vec<_>>()));
         Ok(events)
     }
 

@@ -10,8 +10,8 @@ use support::{band, files, lasting, make};
 use toile_pattern::plan;
 use toile_session::{
     Command, Event, Export, ExportFormat, MarkerFormat, MarkerJob, NestOptions, Paper,
-    PrintOptions, Quality, Search, Session, Silent, Start, nest_marker, nest_patterns,
-    print_pattern, read_journal,
+    PrintOptions, Quality, Search, Session, Silent, Start, WriteOptions, nest_marker,
+    nest_patterns, print_pattern, read_journal,
 };
 
 fn prepared(pattern: &Path) -> Session {
@@ -73,6 +73,18 @@ fn every_format_has_the_bytes_of_the_command_it_stands_for() {
         };
         let to = printed.join(name);
         print_pattern((session.project(), &to), &options, &mut Silent).unwrap();
+    }
+    for export in ExportFormat::ALL {
+        if let Some(format) = export.of_pattern() {
+            let write = Command::WritePattern {
+                path: printed.join(export.file()),
+                options: WriteOptions {
+                    format: Some(format),
+                    all_sizes: format.holds_sizes(),
+                },
+            };
+            session.execute(write, &mut Silent).unwrap();
+        }
     }
     let mut expected: BTreeMap<String, Vec<u8>> = lasting(&made);
     expected.extend(files(&nested));

@@ -443,12 +443,13 @@ fn jobs_without_a_session_take_what_the_file_keeps() {
     let options = ConvertOptions::default();
     let converted = convert(&path, &far, &options).unwrap();
     assert_eq!(converted.notes, [""; 0]);
-    assert_eq!(converted.losses, []);
+    assert_eq!(converted.written.losses, []);
     let (again, events) = open(&far);
     assert_eq!(warned(&events), [""; 0]);
     assert_eq!(again.project().others[0].name(), "Belt");
     let lost = convert(&path, &folder.join("band.json"), &options)
         .unwrap()
+        .written
         .losses;
     assert!(
         lost.iter().any(|loss| loss.what == "the fitting"),

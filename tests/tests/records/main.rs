@@ -5,6 +5,7 @@
 
 mod document;
 mod files;
+mod formats;
 mod journals;
 mod json_text;
 mod refusals;

@@ -6,30 +6,25 @@
 //! - [`crate::app::ToileApp::guard_closing`], [`crate::app::ToileApp::before_leaving`] (`files.rs`): asked
 //!   before unsaved work is lost;
 //! - [`crate::app::notice::Notice`]: messages of the status line;
-//! - [`crate::app::export_choice`], [`crate::app::print_choice`], [`crate::app::file_choice`]: exports,
-//!   prints, files;
+//! - [`crate::app::export_choice`], [`crate::app::print_choice`], [`crate::app::file_choice`],
+//!   [`crate::app::save_choice`]: exports, prints, files;
 //! - [`crate::tools`] (`refusal.rs`, `refuse`): words of refusals.
-//!
-//! By hand: files to export (`GROUPS` of `export_choice`), kinds of files that are listed (`list` of
-//! `file_choice`).
 
 use super::ToileApp;
 use super::answer::{Answer, main_button};
 use super::export_choice::ExportChoice;
 use super::file_choice::FileChoice;
 use super::notice::Notice;
+use super::pick_file::{Picked, pick_file};
 use super::print_choice::PrintChoice;
+use super::save_choice::{SaveChoice, SaveTarget};
 use crate::fields::text_field;
 use crate::tables::WornWhere;
-use crate::theme::Palette;
-use egui::{Context, Key, RichText, ScrollArea, Ui, ViewportCommand};
-use std::path::PathBuf;
+use egui::{Context, Key, Ui, ViewportCommand};
 use toile_session::Command;
 
 /// Width of a dialog (pixels).
 const WIDTH: f32 = 420.0;
-/// Height of a list in a dialog (pixels).
-const LIST: f32 = 240.0;
 
 /// A dialog that is open.
 pub enum Dialog {
@@ -38,7 +33,7 @@ pub enum Dialog {
     /// The file to open.
     Open(FileChoice),
     /// The file to save to.
-    SaveAs(FileChoice),
+    SaveAs(Box<SaveChoice>),
     /// Content and settings of a print.
     Print(Box<PrintChoice>),
     /// Content and folder of an export.
@@ -51,8 +46,10 @@ pub enum Dialog {
     Wearer(FileChoice),
     /// The pattern of a garment that is worn over or under this one.
     Wear(WornWhere, FileChoice),
+    /// A file that belongs to the foreign file that the pattern was read from.
+    With(FileChoice),
     /// Asks whether to replace an existing file.
-    Replace(PathBuf),
+    Replace(SaveTarget),
     /// Asks about unsaved changes; holds the dialog that opens afterwards.
     Leave(Box<Dialog>),
     /// Asks about unsaved changes before the window closes.
@@ -76,7 +73,13 @@ impl ToileApp {
             answer = match &mut dialog {
                 Dialog::New(name) => ask_name(ui, name),
                 Dialog::Open(choice) => ask_file(ui, choice, "Open a pattern", "Open"),
-                Dialog::SaveAs(choice) => ask_file(ui, choice, "Save the pattern", "Save"),
+                Dialog::SaveAs(choice) => self.ask_save_choice(ui, choice),
+                Dialog::With(choice) => ask_file(
+                    ui,
+                    choice,
+                    "A file that belongs to the pattern",
+                    "Read with it",
+                ),
                 Dialog::Print(choice) => self.ask_print_choice(ui, choice),
                 Dialog::Export(choice) => self.ask_export_choice(ui, choice),
                 Dialog::Insert(choice) => {
@@ -101,7 +104,7 @@ impl ToileApp {
                     "A garment to wear under this one",
                     "Wear under it",
                 ),
-                Dialog::Replace(path) => ask_replace(ui, path),
+                Dialog::Replace(target) => ask_replace(ui, target),
                 Dialog::Leave(_) | Dialog::Close => ask_save(ui),
                 Dialog::Recover => self.ask_recover(ui),
                 Dialog::Find(text, chosen) => self.ask_find(ui, text, chosen),
@@ -214,87 +217,33 @@ fn ask_name(ui: &mut Ui, name: &mut String) -> Answer {
 }
 
 fn ask_file(ui: &mut Ui, choice: &mut FileChoice, title: &str, verb: &'static str) -> Answer {
-    ui.heading(title);
-    ui.label(RichText::new(choice.folder.display().to_string()).small());
-    let mut taken = false;
-    let mut folder = None;
-    ScrollArea::vertical()
-        .max_height(LIST)
-        .auto_shrink([false, false])
-        .show(ui, |ui| {
-            if let Some(above) = choice.folder.parent()
-                && ui.selectable_label(false, ".. (folder above)").clicked()
-            {
-                folder = Some(above.to_owned());
-            }
-            for entry in &choice.entries {
-                let words = match entry.is_file {
-                    true => entry.name.clone(),
-                    false => format!("{}/", entry.name),
-                };
-                let response = ui.selectable_label(choice.path == entry.name, words);
-                match entry.is_file {
-                    true if response.double_clicked() => {
-                        choice.path.clone_from(&entry.name);
-                        taken = true;
-                    }
-                    true if response.clicked() => choice.path.clone_from(&entry.name),
-                    false if response.clicked() => folder = Some(choice.folder.join(&entry.name)),
-                    _ => {}
-                }
-            }
-        });
-    if let Some(folder) = folder {
-        choice.list(folder);
-    }
-    if !choice.fault.is_empty() {
-        let colour = Palette::of(ui.ctx()).fault;
-        ui.label(RichText::new(&choice.fault).color(colour));
-    }
-    let label = ui.label("File").id;
-    let field = text_field(ui, egui::Id::unique("file name"), &mut choice.path).labelled_by(label);
-    if ui.memory(|memory| memory.focused().is_none()) {
-        field.request_focus();
-    }
-    let mut answer = Answer::Stay;
-    ui.horizontal(|ui| {
-        let named = !choice.path.trim().is_empty();
-        if ui.add_enabled_ui(named, |ui| main_button(ui, verb)).inner || taken && named {
-            let path = choice.chosen();
-            if path.is_dir() {
-                choice.path.clear();
-                choice.list(path);
-                return;
-            }
-            answer = match verb {
-                "Open" => Answer::Do(Box::new(move |app| app.open(&path))),
-                "Choose" => Answer::Do(Box::new(move |app| app.cut_from_file(&path))),
-                "Insert" => Answer::Do(Box::new(move |app| app.insert_file(&path))),
-                "Take" => Answer::Do(Box::new(move |app| app.take_wearer(&path))),
-                "Wear over it" => Answer::Do(Box::new(move |app| app.wear(&path, WornWhere::Over))),
-                "Wear under it" => {
-                    Answer::Do(Box::new(move |app| app.wear(&path, WornWhere::Under)))
-                }
-                _ => Answer::Do(Box::new(move |app| app.save_to(path, false))),
-            };
-        } else if ui.button("Cancel").clicked() {
-            answer = Answer::Leave;
-        }
-    });
-    answer
+    let path = match pick_file(ui, choice, title, verb, |_| {}) {
+        Picked::Nothing => return Answer::Stay,
+        Picked::Cancel => return Answer::Leave,
+        Picked::File(path) => path,
+    };
+    Answer::Do(match verb {
+        "Choose" => Box::new(move |app: &mut ToileApp| app.cut_from_file(&path)),
+        "Insert" => Box::new(move |app: &mut ToileApp| app.insert_file(&path)),
+        "Take" => Box::new(move |app: &mut ToileApp| app.take_wearer(&path)),
+        "Read with it" => Box::new(move |app: &mut ToileApp| app.read_with(&path)),
+        "Wear over it" => Box::new(move |app: &mut ToileApp| app.wear(&path, WornWhere::Over)),
+        "Wear under it" => Box::new(move |app: &mut ToileApp| app.wear(&path, WornWhere::Under)),
+        _ => Box::new(move |app: &mut ToileApp| app.open(&path)),
+    })
 }
 
-fn ask_replace(ui: &mut Ui, path: &std::path::Path) -> Answer {
+fn ask_replace(ui: &mut Ui, target: &SaveTarget) -> Answer {
     ui.heading("Replace the file?");
-    ui.label(format!("{} is there already.", path.display()));
+    ui.label(format!("{} is there already.", target.path.display()));
     let mut answer = Answer::Stay;
     ui.horizontal(|ui| {
         // Enter does not replace the existing file.
         if main_button(ui, "Another file") {
             answer = Answer::Do(Box::new(ToileApp::ask_save));
         } else if ui.button("Replace").clicked() {
-            let path = path.to_owned();
-            answer = Answer::Do(Box::new(move |app| app.save_to(path, true)));
+            let target = target.clone();
+            answer = Answer::Do(Box::new(move |app| app.save_to(target, true)));
         }
     });
     answer

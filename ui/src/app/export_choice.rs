@@ -6,7 +6,7 @@ use crate::fields::text_field;
 use crate::theme::Palette;
 use egui::{ComboBox, Grid, RichText, Ui};
 use std::path::{Path, PathBuf};
-use toile_session::{Export, ExportFormat};
+use toile_session::{Export, ExportFormat, Format, WriteOptions};
 
 /// Settings of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,69 +20,122 @@ pub struct ExportChoice {
     /// Existing files that the export would replace, and that the user was told of; empty before. If the user
     /// confirms once more, they are replaced.
     pub replaced: Vec<PathBuf>,
+    /// Contents that the chosen formats of patterns leave out, in words.
+    pub lost: Vec<(Format, Vec<String>)>,
     /// Error to show in the dialog.
     pub fault: String,
 }
 
-/// Groups of formats, each format with the label of its tick box.
-const GROUPS: [(&str, &[(ExportFormat, &str)]); 4] = [
-    (
-        "Garment",
-        &[
-            (ExportFormat::Glb, "GLB"),
-            (ExportFormat::Obj, "OBJ"),
-            (ExportFormat::Drape, "Picture of the garment"),
-            (ExportFormat::Fit, "Picture of the fit"),
-        ],
-    ),
-    (
-        "Marker",
-        &[
-            (ExportFormat::MarkerDxf, "Marker DXF"),
-            (ExportFormat::MarkerPlt, "Marker HPGL"),
-            (ExportFormat::MarkerPdf, "Marker PDF"),
-            (ExportFormat::MarkerSvg, "Marker SVG"),
-            (ExportFormat::MarkerReport, "Marker report"),
-            (ExportFormat::MarkerJson, "Marker JSON"),
-            (ExportFormat::MarkerInstance, "Nesting problem JSON"),
-        ],
-    ),
-    (
-        "Pieces",
-        &[
-            (ExportFormat::PiecesPdf, "Pieces PDF"),
-            (ExportFormat::PiecesSvg, "Pieces SVG"),
-        ],
-    ),
-    (
-        "Numbers",
-        &[
-            (ExportFormat::Report, "Report"),
-            (ExportFormat::Journal, "Journal and times"),
-        ],
-    ),
-];
+/// A group of formats in the dialog.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Group {
+    Garment,
+    Marker,
+    Pieces,
+    Pattern,
+    Numbers,
+}
 
-/// Description of the file of a format, in words.
-fn meaning(format: ExportFormat) -> &'static str {
+impl Group {
+    /// The groups with their titles, in the order of the dialog.
+    const ALL: [(Self, &str); 5] = [
+        (Self::Garment, "Garment"),
+        (Self::Marker, "Marker"),
+        (Self::Pieces, "Pieces"),
+        (Self::Pattern, "Pattern"),
+        (Self::Numbers, "Numbers"),
+    ];
+}
+
+/// Group and label of the tick box of a format, and the description of its file.
+fn words(format: ExportFormat) -> (Group, &'static str, &'static str) {
+    use Group::{Garment, Marker, Numbers, Pattern, Pieces};
     match format {
-        ExportFormat::Glb => "the garment as it hangs, for 3D programs; UVs in metres",
-        ExportFormat::Obj => "the garment as it hangs, a group for each panel [m]",
-        ExportFormat::Drape => "the garment worn",
-        ExportFormat::Fit => "how much the cloth is stretched",
-        ExportFormat::MarkerSvg => "the pieces on the fabric at true size",
-        ExportFormat::MarkerJson => "the marker, to be checked or gone on from",
-        ExportFormat::MarkerDxf => {
-            "the pieces on the fabric for cutters and drafting programs [mm]"
+        ExportFormat::Glb => (
+            Garment,
+            "GLB",
+            "the garment as it hangs, for 3D programs; UVs in metres",
+        ),
+        ExportFormat::Obj => (
+            Garment,
+            "OBJ",
+            "the garment as it hangs, a group for each panel [m]",
+        ),
+        ExportFormat::Drape => (Garment, "Picture of the garment", "the garment worn"),
+        ExportFormat::Fit => (
+            Garment,
+            "Picture of the fit",
+            "how much the cloth is stretched",
+        ),
+        ExportFormat::MarkerDxf => (
+            Marker,
+            "Marker DXF",
+            "the pieces on the fabric for cutters and drafting programs [mm]",
+        ),
+        ExportFormat::MarkerPlt => (
+            Marker,
+            "Marker HPGL",
+            "the pieces on the fabric for plotters, HPGL/2",
+        ),
+        ExportFormat::MarkerPdf => (
+            Marker,
+            "Marker PDF",
+            "the pieces on the fabric on one page at true size",
+        ),
+        ExportFormat::MarkerSvg => (
+            Marker,
+            "Marker SVG",
+            "the pieces on the fabric at true size",
+        ),
+        ExportFormat::MarkerReport => (
+            Marker,
+            "Marker report",
+            "A4: picture, table of the pieces, fabric needed",
+        ),
+        ExportFormat::MarkerJson => (
+            Marker,
+            "Marker JSON",
+            "the marker, to be checked or gone on from",
+        ),
+        ExportFormat::MarkerInstance => (
+            Marker,
+            "Nesting problem JSON",
+            "the pieces alone, for other nesting programs",
+        ),
+        ExportFormat::PiecesPdf => (
+            Pieces,
+            "Pieces PDF",
+            "the pieces on sheets of A4 at true size; Print has other paper",
+        ),
+        ExportFormat::PiecesSvg => (Pieces, "Pieces SVG", "the pieces on one page at true size"),
+        ExportFormat::PatternGarmentcode => {
+            (Pattern, "GarmentCode", "panels and seams for GarmentCode")
         }
-        ExportFormat::MarkerPdf => "the pieces on the fabric on one page at true size",
-        ExportFormat::MarkerReport => "A4: picture, table of the pieces, fabric needed",
-        ExportFormat::MarkerPlt => "the pieces on the fabric for plotters, HPGL/2",
-        ExportFormat::MarkerInstance => "the pieces alone, for other nesting programs",
-        ExportFormat::PiecesPdf => "the pieces on sheets of A4 at true size; Print has other paper",
-        ExportFormat::PiecesSvg => "the pieces on one page at true size",
-        ExportFormat::Report => "what is exported, in numbers; by itself garment and marker",
-        ExportFormat::Journal => "the commands that led here, and how long they took",
+        ExportFormat::PatternSvg => (
+            Pattern,
+            "SVG",
+            "the panels in layers, to be drawn on and opened again",
+        ),
+        ExportFormat::PatternDxfAama => (
+            Pattern,
+            "DXF-AAMA",
+            "the pieces in all sizes for programs of the trade",
+        ),
+        ExportFormat::PatternDxfAstm => (
+            Pattern,
+            "DXF-ASTM",
+            "the pieces in all sizes for programs of the trade",
+        ),
+        ExportFormat::Report => (
+            Numbers,
+            "Report",
+            "what is exported, in numbers; by itself garment and marker",
+        ),
+        ExportFormat::Journal => (
+            Numbers,
+            "Journal and times",
+            "the commands that led here, and how long they took",
+        ),
     }
 }
 
@@ -148,22 +201,26 @@ impl ToileApp {
     /// Shows the dialog of an export.
     pub(super) fn ask_export_choice(&self, ui: &mut Ui, choice: &mut ExportChoice) -> Answer {
         ui.heading("Export");
-        for (group, formats) in GROUPS {
-            ui.label(RichText::new(group).strong());
-            Grid::new(("export", group)).num_columns(2).show(ui, |ui| {
-                for (k, (format, words)) in formats.iter().enumerate() {
-                    let mut is_on = choice.formats.contains(format);
-                    let ticked = ui.checkbox(&mut is_on, *words);
+        for (group, title) in Group::ALL {
+            ui.label(RichText::new(title).strong());
+            Grid::new(("export", title)).num_columns(2).show(ui, |ui| {
+                let formats = ExportFormat::ALL.into_iter();
+                let formats = formats.filter(|format| words(*format).0 == group);
+                for (k, format) in formats.enumerate() {
+                    let (_, label, meaning) = words(format);
+                    let mut is_on = choice.formats.contains(&format);
+                    let ticked = ui.checkbox(&mut is_on, label);
                     if ticked.changed() {
-                        choice.set(*format, is_on);
+                        choice.set(format, is_on);
                     }
-                    ticked.on_hover_text(format!("{}: {}", format.file(), meaning(*format)));
+                    ticked.on_hover_text(format!("{}: {meaning}", format.file()));
                     if k % 2 == 1 {
                         ui.end_row();
                     }
                 }
             });
         }
+        self.tell_losses(ui, choice);
         Grid::new("export to").num_columns(2).show(ui, |ui| {
             self.choose_marker(ui, choice);
             let label = ui.label("Folder").id;
@@ -175,6 +232,36 @@ impl ToileApp {
             ui.end_row();
         });
         self.answer_export(ui, choice)
+    }
+
+    /// Tells what the chosen formats of patterns leave out.
+    fn tell_losses(&self, ui: &mut Ui, choice: &mut ExportChoice) {
+        let patterns = choice
+            .formats
+            .iter()
+            .filter_map(|format| format.of_pattern());
+        let patterns: Vec<Format> = patterns.collect();
+        choice.lost.retain(|(format, _)| patterns.contains(format));
+        let project = self.session.project();
+        let palette = Palette::of(ui.ctx());
+        for format in patterns {
+            if !choice.lost.iter().any(|(known, _)| *known == format) {
+                let lost = project.lost_in(format, &WriteOptions::default());
+                let words = lost.map(|lost| lost.iter().map(ToString::to_string).collect());
+                choice.lost.push((
+                    format,
+                    words.unwrap_or_else(|error| vec![error.to_string()]),
+                ));
+            }
+            let lost = choice.lost.iter().find(|(known, _)| *known == format);
+            let Some((_, lost)) = lost.filter(|(_, lost)| !lost.is_empty()) else {
+                continue;
+            };
+            let words = format!("{} leaves out: {}", format.title(), lost.join("; "));
+            let label = RichText::new(words).small().color(palette.warning);
+            ui.add(egui::Label::new(label).truncate())
+                .on_hover_text(lost.join("\n"));
+        }
     }
 
     /// Lets the user choose the marker to write, if the pattern has any.

@@ -63,6 +63,7 @@ impl ToileApp {
         let mut choice = kept.cloned().unwrap_or_default();
         choice.replaced.clear();
         choice.fault.clear();
+        choice.lost.clear();
         if kept.is_none() || of != project.source.as_ref() {
             let source = project.source.as_ref();
             let stem =

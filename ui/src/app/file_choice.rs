@@ -3,9 +3,12 @@
 use std::path::{Path, PathBuf};
 
 /// File name extensions of patterns.
-pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf", "val", "sm2d"];
+pub const PATTERNS: &[&str] = &["json", "yaml", "yml", "dxf", "svg", "val", "sm2d"];
 /// File name extensions of measurement tables and mannequins.
 pub const MEASURED: &[&str] = &["json", "yaml", "yml", "smis", "smms", "vit", "vst"];
+
+/// All file name extensions.
+pub const ANY: &[&str] = &[];
 
 /// State of a dialog in which a file is chosen.
 #[derive(Clone, Debug, Default)]
@@ -16,7 +19,7 @@ pub struct FileChoice {
     pub folder: PathBuf,
     /// Subfolders, and files with the wanted extensions.
     pub entries: Vec<Entry>,
-    /// File name extensions of the files that are listed.
+    /// File name extensions of the files that are listed; empty for all files.
     endings: &'static [&'static str],
     /// Reason why the folder cannot be listed.
     pub fault: String,
@@ -65,7 +68,8 @@ impl FileChoice {
                     let mut endings = self.endings.iter();
                     // Programs on Windows write endings in capitals, too.
                     let lower = name.to_lowercase();
-                    let is_shown = endings.any(|ending| lower.ends_with(&format!(".{ending}")));
+                    let is_shown = self.endings.is_empty()
+                        || endings.any(|ending| lower.ends_with(&format!(".{ending}")));
                     if !name.starts_with('.') && (!is_file || is_shown) {
                         self.entries.push(Entry { is_file, name });
                     }

@@ -3,13 +3,10 @@
 use super::ToileApp;
 use super::dialogs::Dialog;
 use super::file_choice::{FileChoice, MEASURED, PATTERNS};
-use super::notice::Notice;
+use super::save_choice::SaveChoice;
 use crate::tables::WornWhere;
 use std::path::{Path, PathBuf};
-use toile_session::Command;
-
-/// Ending of the names of files in the native format.
-pub const ENDING: &str = ".toile.json";
+use toile_session::{Command, Format};
 
 impl ToileApp {
     pub(crate) fn ask_new(&mut self) {
@@ -34,7 +31,7 @@ impl ToileApp {
 
     /// Choice of a file with one of the extensions `endings`, in the folder of the pattern; no path is
     /// typed yet.
-    fn file_beside(&self, endings: &'static [&'static str]) -> FileChoice {
+    pub(super) fn file_beside(&self, endings: &'static [&'static str]) -> FileChoice {
         let path = self.session.project().source.clone().unwrap_or_default();
         let mut choice = FileChoice::showing(&path, endings);
         choice.path.clear();
@@ -52,7 +49,7 @@ impl ToileApp {
     }
 
     pub(crate) fn ask_save(&mut self) {
-        self.dialog = Some(Dialog::SaveAs(FileChoice::new(&self.save_path())));
+        self.dialog = Some(Dialog::SaveAs(Box::new(SaveChoice::new(&self.save_path()))));
     }
 
     /// Opens a dialog that replaces the document, after asking about unsaved changes.
@@ -76,31 +73,16 @@ impl ToileApp {
         }
     }
 
-    /// Saves to a path; the existing file of another document is replaced only if `replaces` is set.
-    pub(crate) fn save_to(&mut self, path: PathBuf, replaces: bool) {
-        let path = match path.to_string_lossy().ends_with(".json") {
-            true => path,
-            false => PathBuf::from(format!("{}{ENDING}", path.display())),
-        };
-        let own = self.session.project().source.as_ref() == Some(&path);
-        if !own && !replaces && path.exists() {
-            self.dialog = Some(Dialog::Replace(path));
-            return;
-        }
-        self.dialog = None;
-        self.execute(Command::SavePattern { path });
-        self.keep_drape_view();
-    }
-
     /// Path to save to: the file the pattern came from, if that is in the native format; else one beside
     /// it.
     fn save_path(&self) -> PathBuf {
         let project = self.session.project();
+        let ending = Format::Native.ending();
         match &project.source {
-            Some(path) if path.to_string_lossy().ends_with(ENDING) => path.clone(),
+            Some(path) if path.to_string_lossy().ends_with(ending) => path.clone(),
             Some(path) if path.exists() => {
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                path.with_file_name(format!("{stem}{ENDING}"))
+                path.with_file_name(format!("{stem}{ending}"))
             }
             _ => {
                 let plain = |c: char| match c.is_alphanumeric() {
@@ -108,26 +90,8 @@ impl ToileApp {
                     false => '-',
                 };
                 let name: String = project.pattern.name.chars().map(plain).collect();
-                PathBuf::from(format!("{name}{ENDING}"))
+                PathBuf::from(format!("{name}{ending}"))
             }
-        }
-    }
-
-    /// Opens a file that is dropped on the window.
-    pub(crate) fn take_files(&mut self, context: &egui::Context) {
-        let dropped = context.input(|input| {
-            let files = input.raw.dropped_files.iter();
-            files.map(|file| file.path().to_owned()).next_back()
-        });
-        match dropped {
-            Some(path) if !self.is_unsaved() => self.open(&path),
-            Some(_) => {
-                self.notice = Notice::fault(
-                    "The pattern has changes that are not saved: save it, or undo them, \
-                     then drop the file again",
-                );
-            }
-            None => {}
         }
     }
 }

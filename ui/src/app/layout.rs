@@ -49,6 +49,12 @@ impl ToileApp {
                 .show(ui, |ui| self.welcome(ui));
             return;
         }
+        if self.foreign.is_some() {
+            Panel::top("foreign file")
+                .frame(frame)
+                .resizable(false)
+                .show(ui, |ui| self.foreign_bar(ui));
+        }
         if self.panes.marker {
             let height = ui.available_height();
             let below = self.panes.tables && !self.tables_stand_beside(ui.ctx());

@@ -30,6 +30,7 @@ mod exporting;
 mod file_choice;
 mod files;
 mod findings;
+mod foreign_file;
 mod garment_pane;
 mod job;
 mod layout;
@@ -44,9 +45,12 @@ mod palette;
 pub mod panes;
 mod pattern_cards;
 mod perform;
+mod pick_file;
 mod preferences;
 mod print_choice;
 mod printing;
+mod save_choice;
+mod saving;
 mod sewing;
 pub(crate) mod tab;
 mod tool_bar;
@@ -69,6 +73,7 @@ use dialogs::Dialog;
 use eframe::egui_wgpu::RenderState;
 use egui::Ui;
 use exporting::{ExportMemory, Exporting};
+use foreign_file::ForeignFile;
 use marker_pane::{SearchChoice, Searching};
 use notice::Notice;
 use panes::{InspectorPlace, Panes, Tables};
@@ -79,7 +84,9 @@ use std::sync::Arc;
 use std::time::Duration;
 use toile_pattern::plan::Fragment;
 use toile_pattern::{Code, Diagnostic, Evaluation};
-use toile_session::{Abandoned, Command, Event, Project, Recovery, Session, Silent, abandoned};
+use toile_session::{
+    Abandoned, Command, Event, FoundInFile, Project, Recovery, Session, Silent, abandoned,
+};
 
 /// Time between frames while something moves by itself.
 const FRAME: Duration = Duration::from_millis(33);
@@ -118,6 +125,10 @@ pub struct ToileApp {
     /// this selection while the tool is used.
     pub(crate) selected_before: Option<Selection>,
     pub(crate) inspector: InspectorPlace,
+    /// The file of another program that the pattern was read from, while the bar about it stands.
+    pub(crate) foreign: Option<ForeignFile>,
+    /// What reading the pattern's file found out, until the bar about it is made.
+    file_read: Option<FoundInFile>,
     /// Reason why the requested file could not be opened.
     pub(crate) refusal: Option<String>,
     pub(crate) closes: bool,
@@ -185,6 +196,8 @@ impl ToileApp {
             tables_are_beside: false,
             selected_before: None,
             inspector: InspectorPlace::default(),
+            foreign: None,
+            file_read: None,
             refusal: None,
             closes: false,
             closes_at: 0,
@@ -255,15 +268,6 @@ impl ToileApp {
         &self.stage
     }
 
-    /// Opens a pattern in place of the present one.
-    pub fn open(&mut self, path: &Path) {
-        let command = Command::open(path);
-        if !self.execute(command) && !self.is_open() {
-            self.refusal = Some(self.notice.text.clone());
-            self.notice = Notice::default();
-        }
-    }
-
     /// The evaluated pattern without the gesture that is being previewed.
     pub fn base(&self) -> &Evaluation {
         &self.base
@@ -313,6 +317,8 @@ impl ToileApp {
     pub(crate) fn handle_events(&mut self, events: &[Event]) {
         let opened = events.contains(&Event::PatternOpened);
         if opened {
+            self.foreign = None;
+            self.file_read = events.iter().find_map(Event::file_read).cloned();
             self.tables.wearer.forget();
         }
         if !events.is_empty() {

@@ -4,7 +4,7 @@ use super::ToileApp;
 use super::command::{BOTH, Menu, PLAIN, SHIFT, UiCommand, always, command, commands, key};
 use super::tab::Tab;
 use crate::tables::WornWhere;
-use crate::tools::{Tool, alter, arc, draw, panel, parts, ring, seam};
+use crate::tools::{Tool, alter, arc, compass, draw, panel, parts, ring, seam};
 use crate::views::marker::{MarkerAction, MarkerView};
 use egui::Key;
 
@@ -135,6 +135,22 @@ commands! {
         "Draw the mirror image of a point in a line",
         ToileApp::is_open,
         |app| app.take(Tool::Slots(&draw::MIRROR)),
+    );
+    COMPASS_ON_LINE = command(
+        Menu::Draw,
+        "Compass on line",
+        None,
+        "Draw a point on a line at a distance from another point",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&compass::ON_LINE)),
+    );
+    TWO_COMPASSES = command(
+        Menu::Draw,
+        "Two compasses",
+        None,
+        "Draw a point at given distances from two others",
+        ToileApp::is_open,
+        |app| app.take(Tool::Slots(&compass::TWO)),
     );
     MOVE = command(
         Menu::Draw,

@@ -3,7 +3,8 @@
 //!
 //! # Decided with
 //! - [`crate::tools::slots::SlotTool`]: tools that are given one thing after another;
-//! - [`crate::tools::draw`], [`crate::tools::arc`], [`crate::tools::ring`]: draw on a sheet;
+//! - [`crate::tools::draw`], [`crate::tools::arc`], [`crate::tools::ring`], [`crate::tools::compass`]: draw on
+//!   a sheet;
 //! - [`crate::tools::panel`], [`crate::tools::alter`], [`crate::tools::parts`], [`crate::tools::seam`]: work
 //!   on panels, alter them, move parts, sew;
 //! - [`crate::tools::select`] (`drag`), [`crate::tools::rounding::rounded_place`], [`crate::tools::walk`]:
@@ -22,6 +23,7 @@ mod along;
 pub mod alter;
 mod answering;
 pub mod arc;
+pub mod compass;
 mod composed;
 pub mod draw;
 mod finished;

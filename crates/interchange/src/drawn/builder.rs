@@ -6,13 +6,13 @@
 
 use super::allowance::{Width, nearest, width};
 use super::corners::{corners, is_straight};
-use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece};
+use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece, Way};
 use super::spline;
 use crate::Loss;
 use crate::part_names::part_name;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use toile_geometry::{Bounds2, Vec2, ring_area};
+use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{
     CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number, Operation,
     OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
@@ -21,7 +21,7 @@ use toile_pattern::{
 /// Coordinates of two sizes that differ by less are one (m).
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
-const ON_VERTEX: f64 = 2e-4;
+pub(crate) const ON_VERTEX: f64 = 2e-4;
 /// Largest distance of a notch from the line of an edge that it belongs to beyond the corner (m).
 const ON_LINE: f64 = 2e-4;
 /// Distances from a notch that differ by less count as one (m): at an allowance of 10 mm this is 1 mm along the
@@ -60,6 +60,22 @@ pub(crate) fn document(drawn: &DrawnPattern) -> (Pattern, Vec<Loss>) {
     drawn.pieces.iter().for_each(|piece| builder.piece(piece));
     lay_out(&mut builder.pattern, &drawn.pieces, drawn.base);
     (builder.pattern, builder.losses)
+}
+
+/// Adds pieces in one size to a document, as panels after its own; returns contents that were left out.
+pub(crate) fn add_pieces(pattern: &mut Pattern, pieces: &[DrawnPiece]) -> Vec<Loss> {
+    let panels = pattern.panels.iter().map(|panel| panel.name.clone());
+    let sheets = pattern.sheets.iter().map(|sheet| sheet.name.clone());
+    let mut builder = Builder {
+        names: panels.chain(sheets).collect(),
+        pattern: std::mem::take(pattern),
+        sizes: Vec::new(),
+        base: 0,
+        losses: Vec::new(),
+    };
+    pieces.iter().for_each(|piece| builder.piece(piece));
+    *pattern = builder.pattern;
+    builder.losses
 }
 
 struct Builder {
@@ -115,7 +131,7 @@ impl Builder {
         let name = part_name(&piece.name, &mut self.names);
         let fabric = self.fabric(piece.fabric.as_deref());
         let mut outline = piece.outline.clone();
-        if ring_area(outline.in_size(self.base)) < 0.0 {
+        if outline.area(self.base) < 0.0 {
             outline.reverse();
         }
         let mut ids = self.pattern.ids;
@@ -144,7 +160,7 @@ impl Builder {
         let line = drawing.line("outline", LineKind::Outline, edges);
         for (k, hole) in piece.holes.iter().enumerate() {
             let mut hole = hole.clone();
-            if ring_area(hole.in_size(self.base)) > 0.0 {
+            if hole.area(self.base) > 0.0 {
                 hole.reverse();
             }
             let built = self.line(&mut drawing, &mut numbers, &hole, &[]);
@@ -249,7 +265,8 @@ impl Builder {
             numbers.edges += 1;
             let name = format!("e{}", numbers.edges);
             let ends = [points[from], points[to % count]];
-            let rule = self.curve(drawing, numbers, (from, to), &points, &at);
+            let ways: Vec<Way> = (from..to).map(|k| line.way(k % count)).collect();
+            let rule = self.curve(drawing, numbers, (from, &ways), &points, &at);
             edges.push(drawing.edge(name, ends, rule));
         }
         Built {
@@ -259,22 +276,34 @@ impl Builder {
         }
     }
 
-    /// The curve through the vertices from one corner to the next.
+    /// The curve from one corner to the next, along the ways from vertex to vertex.
     fn curve(
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
-        (from, to): (usize, usize),
+        (from, ways): (usize, &[Way]),
         points: &[PointId],
         at: &impl Fn(usize, usize) -> Vec2,
     ) -> CurveRule {
+        let to = from + ways.len();
         let sizes = self.sizes.len().max(1);
+        let given: Option<Vec<[Vec2; 2]>> = ways
+            .iter()
+            .map(|way| match way {
+                Way::Cubic(handles) => Some(*handles),
+                Way::Chord | Way::Straight => None,
+            })
+            .collect();
         let stretch = |size: usize| -> Vec<Vec2> { (from..=to).map(|k| at(k, size)).collect() };
-        if (0..sizes).all(|size| is_straight(&stretch(size))) {
+        if given.is_none() && (0..sizes).all(|size| is_straight(&stretch(size))) {
             return CurveRule::Line;
         }
         let mut all = Vec::with_capacity(sizes);
         for size in 0..sizes {
+            if let Some(handles) = &given {
+                all.push(handles.clone());
+                continue;
+            }
             let (handles, overshoots) = spline::handles(&stretch(size));
             if overshoots && size == self.base {
                 self.losses.push(Loss::at(
@@ -319,15 +348,16 @@ impl Builder {
         cut_line: &[Vec2],
         drawing: &mut PanelBuilder<'_>,
     ) {
-        let vertices = outline.in_size(self.base);
+        let chords = outline.chords(self.base);
+        let vertices = &chords.points;
         let count = vertices.len();
+        let corners: Vec<usize> = built.corners.iter().map(|&k| chords.starts[k]).collect();
         let mut uneven = 0;
-        let widths: Vec<f64> = built
-            .corners
+        let widths: Vec<f64> = corners
             .iter()
             .enumerate()
             .map(|(c, &from)| {
-                let next = built.corners[(c + 1) % built.corners.len()];
+                let next = corners[(c + 1) % corners.len()];
                 let to = if next > from { next } else { next + count };
                 let edge: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
                 match width(&edge, cut_line) {
@@ -373,8 +403,9 @@ impl Builder {
         let count = vertices.len();
         let runs_straight = |from: usize, to: usize| {
             let to = if to > from { to } else { to + count };
+            let is_curve = |k: usize| matches!(outline.way(k % count), Way::Cubic(_));
             let stretch: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
-            is_straight(&stretch)
+            !(from..to).any(is_curve) && is_straight(&stretch)
         };
         match a != b {
             true if runs_straight(a, b) => Some([a, b]),
@@ -391,18 +422,21 @@ impl Builder {
         corners: &[usize],
         notch: &DrawnNotch,
     ) -> Option<Mark> {
-        let vertices = outline.in_size(self.base);
+        let chords = outline.chords(self.base);
+        let vertices = &chords.points;
         let place = notch.at;
-        if let Some(corner) = corner_of(place, vertices, corners) {
-            return Some(Mark::corner(points[corner]));
+        let on_chords: Vec<usize> = corners.iter().map(|&k| chords.starts[k]).collect();
+        if let Some(c) = corner_of(place, vertices, &on_chords) {
+            return Some(Mark::corner(points[corners[c]]));
         }
         let found = nearest(place, vertices).filter(|found| found.distance <= MAX_REACH)?;
         let count = vertices.len();
         let place = found.chord as f64 + found.share;
-        let c = corners.iter().rposition(|&corner| corner <= found.chord);
+        let c = on_chords.iter().rposition(|&corner| corner <= found.chord);
         let c = c.unwrap_or(corners.len() - 1);
-        let from = corners[c];
-        let next = corners[(c + 1) % corners.len()];
+        let ends = [corners[c], corners[(c + 1) % corners.len()]].map(|k| points[k]);
+        let from = on_chords[c];
+        let next = on_chords[(c + 1) % corners.len()];
         let to = if next > from { next } else { next + count };
         let [from_place, to_place] = [from, to].map(|k| k as f64);
         let after_from = |place: f64| match place >= from_place {
@@ -411,7 +445,7 @@ impl Builder {
         };
         let along = after_from(place);
         let share = |size: usize| {
-            let own = outline.in_size(size);
+            let own = &outline.chords(size).points;
             // The place of its own in this size, if that lies between the same corners.
             let given = notch.in_sizes.get(size).copied().flatten();
             let found = given.and_then(|at| nearest(at, own));
@@ -420,13 +454,13 @@ impl Builder {
             let length = |a: f64, b: f64| length_between(own, a, b);
             length(from_place, along) / length(from_place, to_place).max(f64::MIN_POSITIVE)
         };
-        let ends = [points[from], points[to % count]];
         Some(Mark::between(ends, self.number(share)))
     }
 }
 
 /// The corner of a sew line that a place on the cut line belongs to: it lies on the line of one of the edges
-/// that meet there, beyond the corner, or no place is nearer to it than the corner.
+/// that meet there, beyond the corner, or no place is nearer to it than the corner. The corners are indices of
+/// vertices; the one that is returned is an index among them. A place on the sew line itself lies beyond none.
 fn corner_of(place: Vec2, vertices: &[Vec2], corners: &[usize]) -> Option<usize> {
     let count = vertices.len();
     let beyond = |corner: usize, before: usize| {
@@ -441,9 +475,10 @@ fn corner_of(place: Vec2, vertices: &[Vec2], corners: &[usize]) -> Option<usize>
     // other place.
     let nearest = nearest(place, vertices).map_or(0.0, |found| found.distance);
     let is_as_near = |corner: usize| (vertices[corner] - place).norm() <= nearest + AS_NEAR;
-    let mut all = corners.iter().copied();
-    all.find(|&corner| {
-        is_as_near(corner) || beyond(corner, corner + count - 1) || beyond(corner, corner + 1)
+    let is_on_line = nearest <= ON_LINE;
+    corners.iter().position(|&corner| {
+        is_as_near(corner)
+            || !is_on_line && (beyond(corner, corner + count - 1) || beyond(corner, corner + 1))
     })
 }
 
@@ -481,14 +516,7 @@ fn most_common(values: &[f64]) -> f64 {
 /// Lays pieces that overlap in the coordinates of their file side by side on the table, in rows; their
 /// coordinates stay.
 fn lay_out(pattern: &mut Pattern, pieces: &[DrawnPiece], base: usize) {
-    let bounds = |piece: &DrawnPiece| {
-        let outline = piece
-            .outline
-            .by_size
-            .get(base)
-            .or(piece.outline.by_size.first());
-        Bounds2::of(outline.into_iter().flatten().copied())
-    };
+    let bounds = |piece: &DrawnPiece| Bounds2::of(piece.outline.chords(base).points);
     let bounds: Vec<Bounds2> = pieces.iter().map(bounds).collect();
     let any =
         (0..bounds.len()).any(|k| bounds[..k].iter().any(|before| before.overlaps(&bounds[k])));

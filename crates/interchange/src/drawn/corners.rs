@@ -1,6 +1,6 @@
 //! Corners of a line: where the file marks them, else where it kinks.
 
-use super::piece::DrawnLine;
+use super::piece::{DrawnLine, Way};
 use toile_geometry::Vec2;
 
 /// Least turn of a line that is a corner, where the file marks none (rad): 10 degrees.
@@ -13,6 +13,7 @@ pub(crate) const STRAIGHT: f64 = 1e-5;
 pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
     let count = line.len();
     let marked = line.is_corner.iter().any(|&is_corner| is_corner);
+    let is_chord = |k: usize| line.way(k) == Way::Chord;
     let is_corner = |k: usize| {
         let is_end = !line.is_closed && (k == 0 || k + 1 == count);
         let is_kink = || {
@@ -22,9 +23,10 @@ pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
         };
         is_end
             || further.contains(&k)
+            || is_turn(line, k)
             || match marked {
                 true => line.is_corner.get(k) == Some(&true),
-                false => is_kink(),
+                false => is_chord(k) && is_kink(),
             }
     };
     let mut found: Vec<usize> = (0..count).filter(|&k| is_corner(k)).collect();
@@ -34,6 +36,32 @@ pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
         found.sort_unstable();
     }
     found
+}
+
+/// Whether a line that says its ways turns at a vertex: two of another kind meet there, two straight ones, or two
+/// curves at an angle.
+fn is_turn(line: &DrawnLine, k: usize) -> bool {
+    let count = line.len();
+    let before = (k + count - 1) % count;
+    match (line.way(before), line.way(k)) {
+        (Way::Chord, Way::Chord) => false,
+        (Way::Cubic(a), Way::Cubic(b)) => {
+            let points = line.in_size(0);
+            let at = |k: usize| points[k % count];
+            // A handle may lie on its vertex; the next point then shows the direction.
+            let first = |from: Vec2, to: [Vec2; 3]| {
+                let ways = to.into_iter().map(|p| p - from);
+                ways.into_iter().find(|way| way.norm() > STRAIGHT)
+            };
+            let into = first(at(k), [a[1], a[0], at(before)]).map(|way| -way);
+            let out = first(at(k), [b[0], b[1], at(k + 1)]);
+            match (into, out) {
+                (Some(a), Some(b)) => a.perp(&b).atan2(a.dot(&b)).abs() > MIN_KINK,
+                _ => true,
+            }
+        }
+        (Way::Straight | Way::Chord, _) | (Way::Cubic(_), _) => true,
+    }
 }
 
 fn is_kink(points: &[Vec2], k: usize, is_closed: bool) -> bool {

@@ -1,7 +1,14 @@
 //! Pieces and lines as another program drew them, in metres, in all sizes.
 
-use toile_geometry::Vec2;
+use toile_geometry::{Curve, Vec2, ring_area};
 use toile_pattern::{Cut, NotchKind};
+
+/// Most chords that stand for one curve of a line, where its places are measured.
+const MAX_CHORDS: usize = 64;
+/// Fewest chords that do so on a line of very many curves.
+const MIN_CHORDS: usize = 4;
+/// Number of chords that a line of many curves is kept to.
+const CHORDS: usize = 20_000;
 
 /// A pattern as another program drew it.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +48,18 @@ pub(crate) struct DrawnPiece {
     pub fold: Option<[Vec2; 2]>,
 }
 
+/// The way from a vertex of a line to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Way {
+    /// A chord: curves are fitted where vertices show them.
+    #[default]
+    Chord,
+    /// A straight line, as the file says.
+    Straight,
+    /// A cubic Bezier curve with these handles (m).
+    Cubic([Vec2; 2]),
+}
+
 /// A line through vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct DrawnLine {
@@ -50,6 +69,18 @@ pub(crate) struct DrawnLine {
     pub is_closed: bool,
     /// For each vertex, whether the file marks it as a corner; empty if the file marks no corners.
     pub is_corner: Vec<bool>,
+    /// For each vertex, the way to the next; chords where it is too short. Lines of several sizes have chords
+    /// alone.
+    pub ways: Vec<Way>,
+}
+
+/// A line as chords that follow its curves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Chords {
+    /// Ends of the chords (m).
+    pub points: Vec<Vec2>,
+    /// For each vertex of the line, its index among them.
+    pub starts: Vec<usize>,
 }
 
 /// A notch.
@@ -65,12 +96,67 @@ pub(crate) struct DrawnNotch {
 
 impl DrawnLine {
     /// A line in one size.
-    #[cfg(test)]
     pub fn one(points: Vec<Vec2>, is_closed: bool) -> Self {
         Self {
             by_size: vec![points],
             is_closed,
             is_corner: Vec::new(),
+            ways: Vec::new(),
+        }
+    }
+
+    /// The way from a vertex to the next.
+    pub fn way(&self, vertex: usize) -> Way {
+        self.ways.get(vertex).copied().unwrap_or_default()
+    }
+
+    /// Its chords in a size, the curves cut into equal steps.
+    pub fn chords(&self, size: usize) -> Chords {
+        let vertices = self.in_size(size);
+        let is_cubic = |way: &&Way| matches!(way, Way::Cubic(_));
+        let cubics = self.ways.iter().filter(is_cubic).count();
+        let count = (CHORDS / cubics.max(1)).clamp(MIN_CHORDS, MAX_CHORDS);
+        let mut chords = Chords::default();
+        for (k, &start) in vertices.iter().enumerate() {
+            chords.starts.push(chords.points.len());
+            chords.points.push(start);
+            let is_last = k + 1 == vertices.len();
+            if let Way::Cubic(controls) = self.way(k)
+                && (self.is_closed || !is_last)
+            {
+                let end = vertices[(k + 1) % vertices.len()];
+                let curve = Curve::Cubic {
+                    start,
+                    controls,
+                    end,
+                };
+                let steps = 1..count;
+                let at = |step: usize| curve.point(step as f64 / count as f64);
+                chords.points.extend(steps.map(at));
+            }
+        }
+        chords
+    }
+
+    /// The area that it encloses in a size (m2), positive if it runs counter-clockwise.
+    pub fn area(&self, size: usize) -> f64 {
+        ring_area(&self.chords(size).points)
+    }
+
+    /// The line with all its points mapped.
+    #[must_use]
+    pub fn mapped(&self, map: impl Fn(Vec2) -> Vec2) -> Self {
+        let points = |points: &Vec<Vec2>| points.iter().map(|&p| map(p)).collect();
+        let way = |way: &Way| match way {
+            Way::Cubic(handles) => Way::Cubic(handles.map(&map)),
+            Way::Chord => Way::Chord,
+            Way::Straight => Way::Straight,
+        };
+        Self {
+            by_size: self.by_size.iter().map(points).collect(),
+            is_closed: self.is_closed,
+            is_corner: self.is_corner.clone(),
+            ways: self.ways.iter().map(way).collect(),
         }
     }
 
@@ -89,6 +175,17 @@ impl DrawnLine {
     pub fn reverse(&mut self) {
         self.by_size.iter_mut().for_each(|points| points.reverse());
         self.is_corner.reverse();
+        if !self.ways.is_empty() {
+            self.ways.resize(self.len(), Way::Chord);
+            self.ways.reverse();
+            // The way to a vertex is now the way from it.
+            self.ways.rotate_left(1);
+            for way in &mut self.ways {
+                if let Way::Cubic(handles) = way {
+                    handles.reverse();
+                }
+            }
+        }
     }
 
     /// Removes vertices that lie on the one before them in every size, within a tolerance (m).
@@ -101,7 +198,8 @@ impl DrawnLine {
                 k => k - 1,
             };
             let near = |points: &Vec<Vec2>| (points[k] - points[before]).norm() <= tolerance;
-            count > 1 && self.by_size.iter().all(near)
+            let is_loop = matches!(self.way(before), Way::Cubic(_));
+            count > 1 && !is_loop && self.by_size.iter().all(near)
         };
         let gone: Vec<bool> = (0..count).map(repeats).collect();
         for k in (0..count).filter(|&k| gone[k]) {
@@ -110,6 +208,12 @@ impl DrawnLine {
             if self.is_corner.get(k) == Some(&true) {
                 self.is_corner[before] = true;
             }
+        }
+        if !self.ways.is_empty() {
+            self.ways.resize(count, Way::Chord);
+            // The way that goes is the one before the vertex.
+            let mut stays = (0..count).map(|k| !gone[(k + 1) % count]);
+            self.ways.retain(|_| stays.next().unwrap_or(true));
         }
         let mut kept = gone.iter().map(|gone| !gone).cycle();
         for points in &mut self.by_size {
@@ -135,10 +239,47 @@ mod tests {
             ],
             is_closed: false,
             is_corner: vec![false, true, false, false],
+            ways: Vec::new(),
         };
         line.drop_repeats(1e-6);
         assert_eq!(line.by_size[0], [at(0.0), at(1.0), at(1.0)]);
         assert_eq!(line.by_size[1], [at(0.0), at(1.0), at(1.1)]);
         assert_eq!(line.is_corner, [true, false, false]);
+    }
+
+    #[test]
+    fn ways_follow_their_vertices() {
+        let at = |x: f64, y: f64| Vec2::new(x, y);
+        let handles = [at(1.0, 0.5), at(1.0, 0.8)];
+        let mut line = DrawnLine {
+            ways: vec![
+                Way::Straight,
+                Way::Straight,
+                Way::Cubic(handles),
+                Way::Straight,
+            ],
+            ..DrawnLine::one(
+                vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)],
+                true,
+            )
+        };
+        line.drop_repeats(1e-9);
+        assert_eq!(
+            line.ways,
+            [Way::Straight, Way::Cubic(handles), Way::Straight]
+        );
+        let area = line.area(0);
+        let mut turned = line.clone();
+        turned.reverse();
+        assert_eq!(
+            turned.in_size(0),
+            [at(0.0, 1.0), at(1.0, 0.0), at(0.0, 0.0)]
+        );
+        assert_eq!(turned.way(0), Way::Cubic([handles[1], handles[0]]));
+        assert!((turned.area(0) + area).abs() < 1e-12);
+        let chords = line.chords(0);
+        assert_eq!(chords.starts, [0, 1, 1 + MAX_CHORDS]);
+        turned.reverse();
+        assert_eq!(turned, line);
     }
 }

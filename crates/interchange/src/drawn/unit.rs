@@ -1,6 +1,6 @@
 //! The unit of a drawing, by what it states and by the sizes of its pieces.
 
-use crate::Guess;
+use crate::{Guess, ReadOption};
 use toile_pattern::DisplayUnit;
 use toile_pattern::fields::Choice;
 
@@ -54,7 +54,7 @@ pub(crate) fn unit(
         what: "unit",
         chosen: chosen.word().to_owned(),
         because,
-        option: "--unit",
+        option: ReadOption::Unit,
     };
     (chosen, Some(guess))
 }
@@ -78,7 +78,7 @@ mod tests {
         assert!(guess.is_some());
         let (chosen, guess) = unit(None, None, 700.0);
         assert_eq!(chosen, Millimetre);
-        assert_eq!(guess.unwrap().option, "--unit");
+        assert_eq!(guess.unwrap().option, ReadOption::Unit);
         assert_eq!(
             unit(Some(Centimetre), Some(Inch), 700.0),
             (Centimetre, None)

@@ -13,7 +13,7 @@ use crate::drawn::builder::document;
 use crate::drawn::inset::inset;
 use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece};
 use crate::drawn::unit::unit;
-use crate::{Format, FormatError, Guess, Loss, ReadOptions};
+use crate::{Format, FormatError, Guess, Loss, ReadOption, ReadOptions};
 use std::collections::BTreeMap;
 use toile_geometry::{Bounds2, Vec2, ring_area};
 use toile_pattern::{Cut, DisplayUnit, NotchKind, Pattern};
@@ -238,7 +238,7 @@ impl Reader {
                 what: "pieces",
                 chosen: format!("{} outermost closed lines", pieces.len()),
                 because: "the file has no blocks, which pieces are in these formats".to_owned(),
-                option: "--from",
+                option: ReadOption::Format,
             });
         }
         pieces
@@ -282,7 +282,7 @@ impl Reader {
                     "{without_sew_line} of {} pieces have no sew line",
                     drawn.pieces.len()
                 ),
-                option: "--inside",
+                option: ReadOption::Inside,
             });
         }
         Ok(drawn)
@@ -309,7 +309,7 @@ impl Reader {
                 because:
                     "the file names no sample size, and its pieces hold most marks in this one"
                         .to_owned(),
-                option: "--from",
+                option: ReadOption::Format,
             });
         }
         base
@@ -394,6 +394,7 @@ impl Reader {
                 by_size: by_size.collect(),
                 is_closed: usual.is_closed,
                 is_corner: Vec::new(),
+                ways: Vec::new(),
             })
         };
         let cut = in_all(&|piece| piece.cut.first().cloned()).unwrap_or_default();

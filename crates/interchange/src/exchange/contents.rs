@@ -14,7 +14,8 @@ impl Content {
     /// Reason why a format does not carry this kind, or carries its result alone; `None`: it carries it.
     fn lost_in(self, format: Format) -> Option<&'static str> {
         match format {
-            Format::Native => None,
+            // The document is in the metadata of an SVG file.
+            Format::Native | Format::Svg => None,
             Format::GarmentCode => self.lost_in_garmentcode(),
             Format::DxfAama | Format::DxfAstm => self.lost_in_dxf(),
             Format::Valentina | Format::Seamly => Some("the format is not written"),
@@ -78,6 +79,11 @@ impl Content {
     }
 }
 
+/// Reason why a format does not carry a kind of contents, or carries its result alone; `None`: it carries it.
+pub(super) fn lost_in(content: Content, format: Format) -> Option<&'static str> {
+    content.lost_in(format)
+}
+
 /// The contents of a pattern that a format has no place for, in the order of their kinds.
 pub(super) fn losses(pattern: &Pattern, format: Format) -> Vec<Loss> {
     let counts = counted(pattern);
@@ -87,6 +93,12 @@ pub(super) fn losses(pattern: &Pattern, format: Format) -> Vec<Loss> {
         Some(Loss::of(content, count, why))
     });
     lost.collect()
+}
+
+/// The contents of a pattern: every kind that it has, with the number of these.
+pub fn contents(pattern: &Pattern) -> Vec<(Content, usize)> {
+    let all = Content::VARIANTS.iter().copied().zip(counted(pattern));
+    all.filter(|(_, count)| *count > 0).collect()
 }
 
 /// Number of contents of each kind, in the order of the kinds.

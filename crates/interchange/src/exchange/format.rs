@@ -1,5 +1,6 @@
 //! Formats of patterns.
 
+use super::ReadOption;
 use crate::FileKind;
 use serde::{Deserialize, Serialize};
 use strum::{VariantArray, VariantNames};
@@ -18,6 +19,8 @@ pub enum Format {
     #[serde(rename = "garmentcode")]
     #[strum(serialize = "garmentcode")]
     GarmentCode,
+    /// SVG.
+    Svg,
     /// DXF after ANSI/AAMA-292.
     DxfAama,
     /// DXF after ASTM D6673.
@@ -41,6 +44,7 @@ impl Format {
         match self {
             Self::Native => FileKind::Pattern,
             Self::GarmentCode => FileKind::GarmentCode,
+            Self::Svg => FileKind::Svg,
             Self::DxfAama | Self::DxfAstm => FileKind::Dxf,
             Self::Valentina => FileKind::ValentinaPattern,
             Self::Seamly => FileKind::SeamlyPattern,
@@ -61,6 +65,7 @@ impl Format {
         match self {
             Self::Native => ".toile.json",
             Self::GarmentCode => ".json",
+            Self::Svg => ".svg",
             Self::DxfAama | Self::DxfAstm => ".dxf",
             Self::Valentina => ".val",
             Self::Seamly => ".sm2d",
@@ -72,9 +77,12 @@ impl Format {
         match self {
             // GarmentCode's and Toile's own files are both JSON.
             Self::Native => vec![self.ending(), ".json"],
-            Self::GarmentCode | Self::DxfAama | Self::DxfAstm | Self::Valentina | Self::Seamly => {
-                vec![self.ending()]
-            }
+            Self::GarmentCode
+            | Self::Svg
+            | Self::DxfAama
+            | Self::DxfAstm
+            | Self::Valentina
+            | Self::Seamly => vec![self.ending()],
         }
     }
 
@@ -96,14 +104,14 @@ impl Format {
     pub fn holds_shapes(self) -> bool {
         match self {
             Self::Native | Self::Valentina | Self::Seamly => false,
-            Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
+            Self::GarmentCode | Self::Svg | Self::DxfAama | Self::DxfAstm => true,
         }
     }
 
     /// Whether one file holds the shapes of several sizes.
     pub fn holds_sizes(self) -> bool {
         match self {
-            Self::Native | Self::GarmentCode | Self::Valentina | Self::Seamly => false,
+            Self::Native | Self::GarmentCode | Self::Svg | Self::Valentina | Self::Seamly => false,
             Self::DxfAama | Self::DxfAstm => true,
         }
     }
@@ -113,6 +121,7 @@ impl Format {
         match self {
             Self::Native => "Toile",
             Self::GarmentCode => "GarmentCode",
+            Self::Svg => "SVG",
             Self::DxfAama => "DXF-AAMA",
             Self::DxfAstm => "DXF-ASTM",
             Self::Valentina => "Valentina",
@@ -120,10 +129,20 @@ impl Format {
         }
     }
 
+    /// Whether a reader of the format has a use for an answer to what files leave open.
+    pub fn takes(self, option: ReadOption) -> bool {
+        match (self, option) {
+            (_, ReadOption::Format) => true,
+            (Self::Native | Self::GarmentCode, _) => false,
+            (Self::Valentina | Self::Seamly, option) => option == ReadOption::With,
+            (Self::Svg | Self::DxfAama | Self::DxfAstm, option) => option != ReadOption::With,
+        }
+    }
+
     /// Whether this program writes it.
     pub fn is_written(self) -> bool {
         match self {
-            Self::Native | Self::GarmentCode | Self::DxfAama | Self::DxfAstm => true,
+            Self::Native | Self::GarmentCode | Self::Svg | Self::DxfAama | Self::DxfAstm => true,
             Self::Valentina | Self::Seamly => false,
         }
     }
@@ -133,6 +152,7 @@ impl Format {
         let each = Self::all().iter().map(|of| match of {
             Self::Native => "*.toile.json",
             Self::GarmentCode => "GarmentCode specifications (JSON)",
+            Self::Svg => "SVG",
             Self::DxfAama => "DXF-AAMA",
             Self::DxfAstm => "DXF-ASTM",
             Self::Valentina => "Valentina's .val",

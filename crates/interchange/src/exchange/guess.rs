@@ -1,5 +1,6 @@
 //! Decisions of a reader where a file is silent, or contradicts itself.
 
+use super::ReadOption;
 use serde::Serialize;
 use std::fmt;
 
@@ -12,8 +13,8 @@ pub struct Guess {
     pub chosen: String,
     /// The reason, as in "the largest piece is then 73 cm".
     pub because: String,
-    /// The option that gives another answer, as in "--unit".
-    pub option: &'static str,
+    /// The option that gives another answer.
+    pub option: ReadOption,
 }
 
 impl fmt::Display for Guess {

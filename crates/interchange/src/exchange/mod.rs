@@ -9,15 +9,17 @@
 //! - [`crate::exchange::format::Format`]: formats, their words and endings;
 //! - [`crate::exchange::content::Content`], [`crate::exchange::contents`]: what a document holds, and which format
 //!   has a place for it;
-//! - [`crate::native`], [`crate::garmentcode`], [`crate::dxf`], [`crate::valentina`]: readers and writers of the formats.
+//! - [`crate::native`], [`crate::garmentcode`], [`crate::svg`], [`crate::dxf`], [`crate::valentina`]: readers and writers of the formats.
 
 mod content;
 mod contents;
 mod format;
 mod guess;
 mod loss;
+mod read_option;
 mod read_options;
 mod reading;
+mod tables;
 mod write_source;
 mod writing;
 
@@ -25,10 +27,13 @@ mod writing;
 mod tests;
 
 pub use content::Content;
+pub use contents::contents;
 pub use format::Format;
 pub use guess::Guess;
 pub use loss::Loss;
+pub use read_option::ReadOption;
 pub use read_options::{Companion, ReadOptions};
 pub use reading::{Reading, companion_names, read};
+pub use tables::format_tables;
 pub use write_source::{SizedDraft, WriteSource, Writing, Written};
 pub use writing::write;

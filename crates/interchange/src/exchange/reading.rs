@@ -1,8 +1,9 @@
 //! Patterns read from bytes.
 
-use super::{Companion, Format, Guess, Loss, ReadOptions};
+use super::{Companion, Format, Guess, Loss, ReadOption, ReadOptions};
 use crate::dxf::read_dxf;
 use crate::native::{Fitting, PatternFile};
+use crate::svg::{SvgReading, read_svg};
 use crate::valentina::{ValentinaReading, measurement_file, read_valentina};
 use crate::{ExpectedKind, FileKind, FormatError, read_document, read_garmentcode};
 use toile_pattern::Pattern;
@@ -53,9 +54,10 @@ pub fn companion_names(bytes: &[u8]) -> Vec<String> {
             let named = text(bytes).ok().and_then(measurement_file);
             named.into_iter().collect()
         }
-        Some(Format::Native | Format::GarmentCode | Format::DxfAama | Format::DxfAstm) | None => {
-            Vec::new()
-        }
+        Some(
+            Format::Native | Format::GarmentCode | Format::Svg | Format::DxfAama | Format::DxfAstm,
+        )
+        | None => Vec::new(),
     }
 }
 
@@ -83,7 +85,7 @@ pub fn read(
             })
         }
     };
-    refuse_unused(format, options)?;
+    refuse_unused(format, options, companions)?;
     match format {
         Format::Native => {
             let PatternFile {
@@ -94,6 +96,22 @@ pub fn read(
             Ok(Reading {
                 fitting,
                 notes: notes.iter().map(ToString::to_string).collect(),
+                ..Reading::plain(pattern, format)
+            })
+        }
+        Format::Svg => {
+            let SvgReading {
+                pattern,
+                fitting,
+                guesses,
+                losses,
+                notes,
+            } = read_svg(text(bytes)?, options)?;
+            Ok(Reading {
+                fitting,
+                guesses,
+                losses,
+                notes,
                 ..Reading::plain(pattern, format)
             })
         }
@@ -137,20 +155,24 @@ fn looks_like_garmentcode(bytes: &[u8]) -> bool {
 }
 
 /// Refuses answers to questions that a format does not ask.
-fn refuse_unused(format: Format, options: &ReadOptions) -> Result<(), FormatError> {
-    let unused = match format {
-        Format::Native | Format::GarmentCode | Format::Valentina | Format::Seamly => vec![
-            ("--unit", options.unit.is_some()),
-            ("--inside", options.allowance_inside.is_some()),
-        ],
-        Format::DxfAama | Format::DxfAstm => Vec::new(),
+fn refuse_unused(
+    format: Format,
+    options: &ReadOptions,
+    companions: &[Companion],
+) -> Result<(), FormatError> {
+    let is_given = |option: &ReadOption| match option {
+        ReadOption::Format => options.format.is_some(),
+        ReadOption::Unit => options.unit.is_some(),
+        ReadOption::Inside => options.allowance_inside.is_some(),
+        ReadOption::With => !companions.is_empty(),
     };
-    match unused.into_iter().find(|(_, is_given)| *is_given) {
+    let given = ReadOption::ALL.iter().copied().filter(is_given);
+    match given.into_iter().find(|option| !format.takes(*option)) {
         None => Ok(()),
-        Some((option, _)) => Err(FormatError::new(
+        Some(option) => Err(FormatError::new(
             "the options",
             format!(
-                "{option} is given, which files of {} say themselves",
+                "{option} is given, and files of {} have no use for it",
                 format.title()
             ),
             format!("leave {option} out"),

@@ -4,14 +4,29 @@ use super::contents::losses;
 use super::{Content, Format, Loss, WriteSource, Writing, Written};
 use crate::dxf::write_dxf;
 use crate::native::Fitting;
+use crate::svg::write_svg;
 use crate::{FormatError, write_document, write_garmentcode};
 
 /// Writes a pattern in a format.
 ///
 /// # Errors
-/// A value that the format cannot hold, such as a number that is not finite; or no draft for a format that
+/// A value that the format cannot hold, such as a number that is not finite; or no piece for a format that
 /// holds shapes.
 pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, FormatError> {
+    let is_empty = source
+        .drafts
+        .iter()
+        .all(|sized| sized.draft.pieces.is_empty());
+    if format.holds_shapes() && is_empty {
+        return Err(FormatError::new(
+            "the pattern",
+            format!(
+                "no panel of it is cut, so that a file of {} would be empty",
+                format.title()
+            ),
+            "add a panel, or have one cut at least once",
+        ));
+    }
     let whole = losses(source.pattern, format);
     let one = |text: String, further: Vec<Loss>| {
         let bytes = text.into_bytes();
@@ -26,6 +41,7 @@ pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, Format
             write_document(source.pattern, source.fitting)?,
             Vec::new(),
         )),
+        Format::Svg => Ok(one(write_svg(source)?, Vec::new())),
         Format::DxfAama | Format::DxfAstm => {
             let (text, mut further) = write_dxf(source, format == Format::DxfAstm)?;
             further.extend(fitting_lost(source.fitting));

@@ -17,6 +17,11 @@ use toile_pattern::{
     SheetId,
 };
 
+/// Beginnings of the names of a curve's values.
+const OF_CURVES: [&str; 9] = [
+    "", "Angle1", "Angle2", "C1Length", "C2Length", "Radius", "Radius1", "Radius2", "Rotation",
+];
+
 /// A sheet while it is built, with the names that are taken on it.
 #[derive(Default)]
 pub(super) struct SheetInWork {
@@ -44,6 +49,8 @@ pub(super) struct Slot {
 pub(super) struct Build {
     pub pattern: Pattern,
     pub unit: FileUnit,
+    /// Whether a negative length on a spline counts from its end, as newer files mean it.
+    pub from_ends: bool,
     pub sheets: Vec<SheetInWork>,
     /// Parts of the file by their numbers.
     pub things: HashMap<u32, Thing>,
@@ -75,6 +82,7 @@ impl Build {
         Self {
             pattern: Pattern::default(),
             unit,
+            from_ends: false,
             sheets: Vec::new(),
             things: HashMap::new(),
             places: Vec::new(),
@@ -300,6 +308,22 @@ impl Build {
         }
     }
 
+    /// Whether a formula of the file uses a name that is not known yet.
+    pub fn is_wanted(&self, name: &str) -> bool {
+        self.used.contains(name) && !self.symbols.contains_key(name)
+    }
+
+    /// Gives the values of a curve the names that they have by another name of the curve too.
+    pub fn name_also(&mut self, curve: &str, alias: &str) {
+        let kind = curve.split('_').next().unwrap_or_default();
+        for prefix in OF_CURVES {
+            if let Some(symbol) = self.symbols.get(&format!("{prefix}{curve}")).cloned() {
+                self.symbols
+                    .insert(format!("{prefix}{kind}_{alias}"), symbol);
+            }
+        }
+    }
+
     /// Gives a length a name for formulas.
     pub fn name_length(&mut self, name: String, text: &str, metres: f64) {
         self.name_value(name, text, LENGTH, metres);
@@ -347,6 +371,24 @@ impl Build {
                 degrees
             },
         })
+    }
+
+    /// A point for a tool that has no place in the base size: the other program puts it at the origin.
+    pub fn at_origin(&mut self, name: &str, why: &str) -> PointThing {
+        let why = format!("{why}: it stays at the origin, where the other program has it");
+        self.losses.push(Loss::at(name, "a construction", why));
+        self.add_point(name, PointRule::at(0.0, 0.0), Vec2::zeros())
+    }
+
+    /// A point in the place of another, for a tool that has no other place in the base size.
+    pub fn at_place_of(&mut self, name: &str, base: PointThing, why: &str) -> PointThing {
+        let rule = PointRule::Offset {
+            base: base.id,
+            x: 0.0.into(),
+            y: 0.0.into(),
+        };
+        self.losses.push(Loss::at(name, "a construction", why));
+        self.add_point(name, rule, base.at)
     }
 
     /// Says that a tool was left out.

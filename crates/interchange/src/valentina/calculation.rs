@@ -6,6 +6,8 @@ use super::curves;
 use super::cuts;
 use super::operations;
 use super::points;
+use super::rounds;
+use super::splines;
 use super::things::{Made, Thing};
 use crate::xml::Xml;
 use roxmltree::Node;
@@ -26,7 +28,7 @@ pub(super) fn read(build: &mut Build, xml: &Xml<'_>, drawing: Node<'_, '_>) {
             }
             "spline" => curves::curve(build, node, tool).map(|made| keep_curve(build, node, made)),
             "elArc" => Some({
-                let made = curves::elliptic(build, node);
+                let made = rounds::elliptic(build, node);
                 keep_curve(build, node, made)
             }),
             "arc" => {
@@ -75,8 +77,12 @@ fn keep_point(build: &mut Build, node: Node<'_, '_>, made: Made) -> Result<(), S
     Ok(())
 }
 
-fn keep_curve(build: &mut Build, node: Node<'_, '_>, made: curves::Made) -> Result<(), String> {
+fn keep_curve(build: &mut Build, node: Node<'_, '_>, made: splines::Made) -> Result<(), String> {
     let id = reference(node, "id")?;
-    build.things.insert(id, Thing::Curve(made?));
+    let made = made?;
+    if let Some(alias) = node.attribute("alias") {
+        build.name_also(&made.name.clone(), alias);
+    }
+    build.things.insert(id, Thing::Curve(made));
     Ok(())
 }

@@ -68,7 +68,10 @@ fn of_contact(build: &mut Build, node: Node<'_, '_>) -> Made {
     let centre = build.point(node, "center")?;
     let radius = build.number(node, "radius", LENGTH)?;
     let places = line.map(|end| end.at);
-    let reach = on_line(places, centre.at, radius.value)?;
+    let reach = match on_line(places, centre.at, radius.value) {
+        Ok(reach) => reach,
+        Err(why) => return Ok(build.at_origin(name(node), &why)),
+    };
     let total = (places[1] - places[0]).norm();
     let within = reach.map(|along| (-1e-9..=total + 1e-9).contains(&along));
     let far = match within {
@@ -104,6 +107,11 @@ fn shoulder(build: &mut Build, node: Node<'_, '_>) -> Made {
     let line = line_ends(build, node, ["p1Line", "p2Line"])?;
     let centre = build.point(node, "pShoulder")?;
     let distance = build.number(node, "length", LENGTH)?;
+    let end = line[1];
+    if distance.value < (end.at - centre.at).norm() {
+        let why = "its length does not reach beyond the end of the line, so it lies at that end";
+        return Ok(build.at_place_of(name(node), end, why));
+    }
     let reach = on_line(line.map(|end| end.at), centre.at, distance.value)?;
     at_on_line(build, node, line, (centre, distance.number), (reach, true))
 }
@@ -120,11 +128,31 @@ fn triangle(build: &mut Build, node: Node<'_, '_>) -> Made {
     };
     let middle = (ends[0].at + ends[1].at) / 2.0;
     let radius = (ends[1].at - ends[0].at).norm() / 2.0;
+    if !separates(axis.map(|end| end.at), ends.map(|end| end.at)) {
+        let why =
+            "its axis does not pass between its points: it lies where the axis meets their line";
+        return match super::points::cross(build, name(node), axis, ends) {
+            Ok(made) => {
+                build
+                    .losses
+                    .push(Loss::at(name(node), "a construction", why));
+                Ok(made)
+            }
+            Err(parallel) => Ok(build.at_origin(name(node), &parallel)),
+        };
+    }
     let reach = on_line(axis.map(|end| end.at), middle, radius)?;
     let centre = build.add_point(&format!("{} middle", name(node)), rule, middle);
     let text = format!("distance(?{}, ?{}) / 2", ends[0].id.0, ends[1].id.0);
     let distance = build.formula(&text)?;
     at_on_line(build, node, axis, (centre, distance), (reach, true))
+}
+
+/// Whether a line passes between two places, or through one.
+fn separates(line: [Vec2; 2], [a, b]: [Vec2; 2]) -> bool {
+    let way = line[1] - line[0];
+    let side = |at: Vec2| way.perp(&(at - line[0]));
+    side(a) * side(b) <= 1e-18
 }
 
 /// Both places at two distances from two centres: left of the way from the first to the second, and right.
@@ -149,11 +177,14 @@ fn is_second(node: Node<'_, '_>, attribute: &str) -> bool {
 }
 
 fn of_circles(build: &mut Build, node: Node<'_, '_>) -> Made {
-    let centres = line_ends(build, node, ["firstPCenter", "secondPCenter"])?;
-    let first = build.number(node, "firstCRadius", LENGTH)?;
-    let second = build.number(node, "secondCRadius", LENGTH)?;
+    let centres = line_ends(build, node, ["c1Center", "c2Center"])?;
+    let first = build.number(node, "c1Radius", LENGTH)?;
+    let second = build.number(node, "c2Radius", LENGTH)?;
     let values = [first.value, second.value];
-    let found = of_two_distances(centres.map(|one| one.at), values)?;
+    let found = match of_two_distances(centres.map(|one| one.at), values) {
+        Ok(found) => found,
+        Err(why) => return Ok(build.at_origin(name(node), &why)),
+    };
     // The first of the two lies to the right there.
     let left = is_second(node, "crossPoint");
     let at = if left { found[0] } else { found[1] };
@@ -187,7 +218,10 @@ fn crossing_at(
         .collect();
     let candidates: Vec<Vec2> = kept.iter().map(|&k| places[k]).collect();
     let chosen = choose(&candidates).and_then(|k| kept.get(k).copied());
-    let index = chosen.ok_or("its curves do not cross")?;
+    let Some(index) = chosen else {
+        let name = attribute_of(node, "name")?;
+        return Ok(build.at_origin(name, "its curves do not cross"));
+    };
     let rule = PointRule::CurveCrossing {
         curves: [curves[0].id, curves[1].id],
         index: u16::try_from(index).unwrap_or_default(),
@@ -241,7 +275,8 @@ fn circle_of(curve: &CurveThing) -> Option<(Vec2, f64)> {
         let place = path.at_length(total * share)?;
         Some(path.point(place))
     };
-    let (a, b, c) = (at(0.0)?, at(0.5)?, at(1.0)?);
+    // Both ends of a full circle are in one place.
+    let (a, b, c) = (at(0.0)?, at(1.0 / 3.0)?, at(2.0 / 3.0)?);
     let (p, q) = (b - a, c - a);
     let turn = 2.0 * p.perp(&q);
     if turn.abs() < 1e-15 {
@@ -286,7 +321,10 @@ fn tangent_of_circle(build: &mut Build, node: Node<'_, '_>) -> Made {
     let radius = build.number(node, "cRadius", LENGTH)?;
     let from = build.point(node, "tangent")?;
     let left = is_second(node, "crossPoint");
-    let at = tangent(from.at, centre.at, radius.value, left)?;
+    let at = match tangent(from.at, centre.at, radius.value, left) {
+        Ok(at) => at,
+        Err(why) => return Ok(build.at_origin(name(node), &why)),
+    };
     tangent_point(build, name(node), [from, centre], &radius, (at, left))
 }
 

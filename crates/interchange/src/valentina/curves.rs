@@ -2,17 +2,13 @@
 
 use super::build::{Build, Slot, reference};
 use super::kinds::{LENGTH, PLAIN, Quantity};
-use super::points::direction;
+use super::rounds::{Round, full_circle, name_round};
+use super::splines::{Handled, Made, handle, spline};
 use super::things::{CurveThing, PointThing};
-use crate::exchange::Loss;
 use roxmltree::Node;
 use std::f64::consts::{PI, SQRT_2, TAU};
-use std::sync::Arc;
-use toile_geometry::{Curve as Piece, Vec2};
-use toile_pattern::{CurveRule, Knot, Number, PointRule};
-
-/// Answer of a tool: the curve, or the reason in words why it cannot be made.
-pub(super) type Made = Result<Arc<CurveThing>, String>;
+use toile_geometry::Curve as Piece;
+use toile_pattern::{CurveRule, Number};
 
 /// Makes the curve of a tool. `None`: the tool is none of these.
 pub(super) fn curve(build: &mut Build, node: Node<'_, '_>, tool: &str) -> Option<Made> {
@@ -33,13 +29,6 @@ fn old_share() -> f64 {
     4.0 / 3.0 * (PI / 8.0).tan() / SQRT_2
 }
 
-/// A point with the handles of a spline before and after it.
-struct Handled {
-    point: PointThing,
-    before: PointThing,
-    after: PointThing,
-}
-
 /// Name of a curve from its first and last point, as in `Spl_A_B`; several of one name are numbered.
 fn name_of(build: &Build, node: Node<'_, '_>, kind: &str, ends: [PointThing; 2]) -> String {
     let [a, b] = ends.map(|end| build.file_name(end));
@@ -47,55 +36,6 @@ fn name_of(build: &Build, node: Node<'_, '_>, kind: &str, ends: [PointThing; 2])
         None | Some("" | "0") => format!("{kind}_{a}_{b}"),
         Some(number) => format!("{kind}_{a}_{b}_{number}"),
     }
-}
-
-/// A handle of a spline: a point in a direction and at a distance from a point.
-fn handle(
-    build: &mut Build,
-    name: &str,
-    base: PointThing,
-    angle: &Slot,
-    distance: (Number, f64),
-) -> PointThing {
-    let rule = PointRule::Polar {
-        base: base.id,
-        angle: angle.number.clone(),
-        distance: distance.0,
-    };
-    let at = base.at + direction(angle.value) * distance.1;
-    build.add_point(name, rule, at)
-}
-
-/// A spline through points; the first handle of the first point and the last of the last are not used.
-fn spline(build: &mut Build, name: &str, points: Vec<Handled>) -> Made {
-    let (Some(first), Some(last)) = (points.first(), points.last()) else {
-        return Err("it has no points".to_owned());
-    };
-    if points.len() < 2 {
-        return Err("it has a single point".to_owned());
-    }
-    let ends = [first.point, last.point];
-    let handles = [first.after.id, last.before.id];
-    let inner = &points[1..points.len() - 1];
-    let knots = inner.iter().map(|one| Knot {
-        before: one.before.id,
-        point: one.point.id,
-        after: one.after.id,
-    });
-    let rule = CurveRule::Spline {
-        handles,
-        knots: knots.collect(),
-        to_length: None,
-    };
-    let pieces = points.windows(2).map(|pair| Piece::Cubic {
-        start: pair[0].point.at,
-        controls: [pair[0].after.at, pair[1].before.at],
-        end: pair[1].point.at,
-    });
-    let pieces = pieces.collect();
-    let made = build.add_curve(name, ends, rule, pieces);
-    build.name_length(name.to_owned(), &made.length.clone(), made.path.length());
-    Ok(made)
 }
 
 fn two_ends(build: &mut Build, node: Node<'_, '_>) -> Result<[PointThing; 2], String> {
@@ -133,7 +73,7 @@ fn between(
             after: point,
         });
     }
-    spline(build, &name, made)
+    spline(build, &name, &made)
 }
 
 fn simple(build: &mut Build, node: Node<'_, '_>) -> Made {
@@ -215,7 +155,7 @@ fn path(build: &mut Build, node: Node<'_, '_>, make: MakeKnot) -> Made {
         let told = format!("{name} {}", k + 1);
         handled.push(make(build, &told, (*one, all), neighbours, points[k])?);
     }
-    spline(build, &name, handled)
+    spline(build, &name, &handled)
 }
 
 fn knot(
@@ -298,7 +238,7 @@ fn cubic(build: &mut Build, node: Node<'_, '_>) -> Made {
         before: handles[k],
         after: handles[k],
     });
-    spline(build, &name, points.into())
+    spline(build, &name, &points)
 }
 
 /// A path whose points are in turn a point, two handles, and the next point.
@@ -319,8 +259,8 @@ fn cubic_path(build: &mut Build, node: Node<'_, '_>) -> Made {
         before: points[k.saturating_sub(1)],
         after: points[(k + 1).min(points.len() - 1)],
     });
-    let knots = knots.collect();
-    spline(build, &name, knots)
+    let knots: Vec<Handled> = knots.collect();
+    spline(build, &name, &knots)
 }
 
 /// An arc from a start, as far round its centre as it sweeps.
@@ -341,9 +281,6 @@ fn make_arc(
     let id = reference(node, "id")?;
     let name = format!("Arc_{}_{id}", build.file_name(centre));
     let (bulge, value) = sweep.bulge;
-    if !(value.is_finite() && value.abs() < 1e6) {
-        return Err("it is a full circle".to_owned());
-    }
     let distance = (radius.number.clone(), radius.value);
     let from = handle(
         build,
@@ -359,22 +296,14 @@ fn make_arc(
         bulge: value,
     };
     let made = build.add_curve(&name, [from, to], CurveRule::Arc { bulge }, vec![piece]);
-    build.name_length(name.clone(), &made.length.clone(), made.path.length());
-    build.name_length(format!("Radius{name}"), &radius.text, radius.value);
-    build.name_value(
-        format!("Angle1{name}"),
-        &start.text,
-        Quantity::Angle,
-        start.value,
-    );
+    // An arc that runs clockwise has a negative length there.
+    let (text, length) = match value < 0.0 {
+        true => (format!("(-{})", made.length), -made.path.length()),
+        false => (made.length.clone(), made.path.length()),
+    };
+    build.name_length(name.clone(), &text, length);
+    name_round(build, &name, radius, [start, &sweep.end]);
     build.circles.insert(made.id, (centre, radius.clone()));
-    let end = &sweep.end;
-    build.name_value(
-        format!("Angle2{name}"),
-        &end.text,
-        Quantity::Angle,
-        end.value,
-    );
     Ok(made)
 }
 
@@ -384,9 +313,15 @@ pub(super) fn arc(build: &mut Build, node: Node<'_, '_>) -> Made {
     let radius = build.number(node, "radius", LENGTH)?;
     let start = build.number(node, "angle1", Quantity::Angle)?;
     let end = build.number(node, "angle2", Quantity::Angle)?;
-    let mut swept = (end.value - start.value).rem_euclid(TAU);
-    if swept <= 1e-9 {
-        swept += TAU;
+    let swept = (end.value - start.value).rem_euclid(TAU);
+    if !(1e-9..=TAU - 1e-9).contains(&swept) {
+        let round = Round {
+            centre,
+            radius: &radius,
+            start: &start,
+            turn: TAU,
+        };
+        return full_circle(build, node, &round);
     }
     let value = (swept / 4.0).tan();
     let is_fixed = start.number.value().is_some() && end.number.value().is_some();
@@ -418,8 +353,17 @@ fn arc_with_length(build: &mut Build, node: Node<'_, '_>) -> Made {
     let start = build.number(node, "angle1", Quantity::Angle)?;
     let length = build.number(node, "length", LENGTH)?;
     let swept = length.value / radius.value;
-    if !(swept.is_finite() && swept.abs() < TAU) {
-        return Err("it is longer than its circle".to_owned());
+    if !swept.is_finite() {
+        return Err("its radius is 0".to_owned());
+    }
+    if swept.abs() >= TAU - 1e-9 {
+        let round = Round {
+            centre,
+            radius: &radius,
+            start: &start,
+            turn: TAU.copysign(swept),
+        };
+        return full_circle(build, node, &round);
     }
     let turn = format!("{} / {}", length.text, radius.text);
     let text = format!("{} + {turn}", start.text);
@@ -434,61 +378,6 @@ fn arc_with_length(build: &mut Build, node: Node<'_, '_>) -> Made {
         bulge: (bulge, (swept / 4.0).tan()),
     };
     make_arc(build, node, (centre, &radius, &start), sweep)
-}
-
-/// Number of cubic curves that stand for an elliptic arc.
-const PIECES: usize = 8;
-
-/// Makes an elliptic arc as a spline that keeps its shape in the base size.
-pub(super) fn elliptic(build: &mut Build, node: Node<'_, '_>) -> Made {
-    let centre = build.point(node, "center")?;
-    let [a, b] = [
-        build.number(node, "radius1", LENGTH)?.value,
-        build.number(node, "radius2", LENGTH)?.value,
-    ];
-    let [start, end] = [
-        build.number(node, "angle1", Quantity::Angle)?.value,
-        build.number(node, "angle2", Quantity::Angle)?.value,
-    ];
-    let turned = match node.attribute("rotationAngle") {
-        Some(_) => build.number(node, "rotationAngle", Quantity::Angle)?.value,
-        None => 0.0,
-    };
-    if !(a > 0.0 && b > 0.0) {
-        return Err("its radius is not above 0".to_owned());
-    }
-    // Directions of points, and the angle whose cosine and sine give them on the ellipse.
-    let parameter = |angle: f64| (angle.sin() / b).atan2(angle.cos() / a);
-    let from = parameter(start);
-    let swept = (parameter(end) - from).rem_euclid(TAU);
-    let swept = if swept <= 1e-9 { swept + TAU } else { swept };
-    let (sin, cos) = turned.sin_cos();
-    let out = |x: f64, y: f64| Vec2::new(x * cos - y * sin, x * sin + y * cos);
-    let step = swept / PIECES as f64;
-    let reach = 4.0 / 3.0 * (step / 4.0).tan();
-    let id = reference(node, "id")?;
-    let name = format!("ElArc_{}_{id}", build.file_name(centre));
-    let mut points = Vec::new();
-    for k in 0..=PIECES {
-        let (sin, cos) = (from + step * k as f64).sin_cos();
-        let at = centre.at + out(a * cos, b * sin);
-        let way = out(-a * sin, b * cos) * reach;
-        let mut add = |what: &str, at: Vec2| {
-            let told = format!("{name} {what}{k}");
-            build.add_point(&told, PointRule::at(at.x, at.y), at)
-        };
-        points.push(Handled {
-            point: add("", at),
-            before: add("before ", at - way),
-            after: add("after ", at + way),
-        });
-    }
-    build.losses.push(Loss::at(
-        name.clone(),
-        "an elliptic arc",
-        "a spline stands for it, as it is in the base size",
-    ));
-    spline(build, &name, points)
 }
 
 /// Places of a curve moved by a function, for the base size.

@@ -9,6 +9,9 @@ use roxmltree::Node;
 use std::sync::Arc;
 use toile_pattern::PointRule;
 
+/// Length of the shortest part of a curve that is cut off (m).
+const MIN_PART: f64 = 1e-3;
+
 /// Makes the point of a tool that cuts a curve. `None`: the tool is none of these.
 pub(super) fn point(build: &mut Build, node: Node<'_, '_>, tool: &str) -> Option<Made> {
     let attribute = match tool {
@@ -30,28 +33,45 @@ fn cut(build: &mut Build, node: Node<'_, '_>, attribute: &str) -> Made {
     build.name_length(NAME.to_owned(), &curve.length, total);
     let distance = build.number(node, "length", LENGTH);
     build.symbols.remove(NAME);
-    let distance = distance?;
-    // A negative length counts from the end; none is longer than the curve.
-    let along = match distance.value < 0.0 {
+    let mut distance = distance?;
+    let own = build.symbols.get(&curve.name);
+    if own.is_some_and(|length| length.value < 0.0) {
+        // The length of a clockwise arc is negative there, and so are those along it.
+        let text = format!("(-{})", distance.text);
+        distance = Slot {
+            number: build.formula(&text)?,
+            value: -distance.value,
+            text,
+        };
+    }
+    let counts_back = distance.value < 0.0 && (attribute == "arc" || build.from_ends);
+    let along = match counts_back {
         true => total + distance.value,
         false => distance.value,
     };
-    if !(0.0..=total).contains(&along) {
-        return Err("its length is more than that of the curve".to_owned());
-    }
+    let least = MIN_PART.min(total / 2.0);
+    let is_within = (least - 1e-9..=total - least + 1e-9).contains(&along);
+    let along = along.clamp(least, total - least);
     let place = curve
         .path
         .at_length(along)
         .ok_or("its curve has no length")?;
     let at = curve.path.point(place);
-    let text = match distance.value < 0.0 {
-        true => format!("({} + {})", curve.length, distance.text),
-        false => distance.text.clone(),
+    let text = match (is_within, counts_back) {
+        (true, true) => format!("({} + {})", curve.length, distance.text),
+        (true, false) => distance.text.clone(),
+        (false, _) if along < total / 2.0 => format!("{along}m"),
+        (false, _) => format!("({} - {least}m)", curve.length),
     };
-    let number = match curve.is_whole {
+    let number = match curve.is_whole && is_within {
         true => distance.number.clone(),
         false => along_whole(build, &curve, &text)?,
     };
+    if !is_within {
+        let name = node.attribute("name").unwrap_or_default();
+        let why = "its length does not lie on the curve in the base size: 1 mm from the end is taken, as there";
+        build.losses.push(Loss::at(name, "the place of a cut", why));
+    }
     let rule = PointRule::AlongCurve {
         curve: curve.id,
         distance: number,
@@ -90,6 +110,9 @@ pub(super) fn parts(
 ) -> Result<(), String> {
     let id = reference(node, "id")?;
     let name = node.attribute("name").unwrap_or_default();
+    let numbers = [("segment1Id", 1), ("segment2Id", 2)].map(|(attribute, step)| {
+        reference(node, attribute).unwrap_or_else(|_| id.saturating_add(step))
+    });
     let total = curve.path.length();
     let along = match &first {
         Some(first) => first.value,
@@ -113,7 +136,7 @@ pub(super) fn parts(
         "Arc" => {
             let centre = curve.name.trim_start_matches("Arc_");
             let centre = centre.rsplit_once('_').map_or(centre, |(centre, _)| centre);
-            [1, 2].map(|step| format!("Arc_{centre}_{}", id.saturating_add(step)))
+            numbers.map(|number| format!("Arc_{centre}_{number}"))
         }
         _ => [format!("{kind}_{a}_{name}"), format!("{kind}_{name}_{b}")],
     };
@@ -127,7 +150,6 @@ pub(super) fn parts(
         }),
     ];
     for (k, start) in starts.into_iter().enumerate() {
-        let number = id.saturating_add(k as u32 + 1);
         let part = CurveThing {
             ends: ends[k],
             path: curve.path.between(reach[k][0], reach[k][1]),
@@ -149,7 +171,10 @@ pub(super) fn parts(
                 ));
             }
         }
-        let known = build.things.entry(number);
+        if let Some(alias) = node.attribute(["alias1", "alias2"][k]) {
+            build.name_also(&names[k], alias);
+        }
+        let known = build.things.entry(numbers[k]);
         known.or_insert(Thing::Curve(Arc::new(part)));
     }
     Ok(())

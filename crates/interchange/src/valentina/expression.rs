@@ -66,6 +66,7 @@ impl Expression {
         let mut reader = Reader {
             rest: text,
             depth: 0,
+            calls: 0,
         };
         let read = reader.choice()?;
         match reader.peek() {
@@ -90,6 +91,8 @@ impl Expression {
 struct Reader<'a> {
     rest: &'a str,
     depth: usize,
+    /// Functions whose arguments are being read: between these a comma separates.
+    calls: usize,
 }
 
 impl Reader<'_> {
@@ -189,10 +192,12 @@ impl Reader<'_> {
         if !self.take("(") {
             return Ok(Expression::Name(name.to_owned()));
         }
+        self.calls += 1;
         let mut arguments = vec![self.choice()?];
         while self.take(";") || self.take(",") {
             arguments.push(self.choice()?);
         }
+        self.calls -= 1;
         self.want(")")?;
         Ok(Expression::Call(name.to_owned(), arguments))
     }
@@ -204,7 +209,10 @@ impl Reader<'_> {
             from + more.take_while(|byte| byte.is_ascii_digit()).count()
         };
         let mut end = digits(0);
-        if bytes.get(end) == Some(&b'.') {
+        let is_decimal_comma = self.calls == 0
+            && bytes.get(end) == Some(&b',')
+            && bytes.get(end + 1).is_some_and(u8::is_ascii_digit);
+        if bytes.get(end) == Some(&b'.') || is_decimal_comma {
             end = digits(end + 1);
         }
         if matches!(bytes.get(end), Some(b'e' | b'E')) {
@@ -216,7 +224,8 @@ impl Reader<'_> {
         }
         let (text, rest) = self.rest.split_at(end);
         self.rest = rest;
-        let number = text.parse().map_err(|_| format!("{text:?} is no number"))?;
+        let number = text.replace(',', ".").parse();
+        let number = number.map_err(|_| format!("{text:?} is no number"))?;
         Ok(Expression::Literal(number))
     }
 }

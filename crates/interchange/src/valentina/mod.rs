@@ -18,15 +18,20 @@ mod curves;
 mod cuts;
 mod expression;
 mod kinds;
+mod loops;
 mod nodes;
 mod operations;
 mod pieces;
 mod points;
 mod quantities;
+mod rounds;
+mod sizes;
+mod splines;
 mod things;
 mod translate;
 mod variables;
 mod verify;
+mod versions;
 
 #[cfg(test)]
 mod tests;
@@ -91,10 +96,12 @@ pub(crate) fn read_valentina(
         "in" => DisplayUnit::Inch,
         _ => DisplayUnit::Centimetre,
     };
+    versions::read(&mut build, root);
     variables::read(&mut build, &xml, companions)?;
     let fabric: FabricId = build.pattern.ids.take();
     build.pattern.fabrics.push(Arc::new(Fabric::poplin(fabric)));
     let (mut sheets, mut panels) = (BTreeSet::new(), BTreeSet::new());
+    let modeling = pieces::modeling(root);
     let drawings = root
         .children()
         .filter(|node| node.has_tag_name("draw") || node.has_tag_name("draftBlock"));
@@ -107,18 +114,40 @@ pub(crate) fn read_valentina(
         {
             calculation::read(&mut build, &xml, calculation);
         }
-        pieces::read(&mut build, &xml, drawing, fabric, &mut panels);
+        pieces::read(&mut build, &xml, drawing, (&modeling, fabric), &mut panels);
     }
     if build.sheets.is_empty() {
         let what = "this pattern of Valentina or Seamly2D has no drawing";
         return Err(FormatError::new("the whole file", what, REMEDY));
     }
+    left_aside(&mut build, &xml);
     Ok(done(build))
 }
 
 fn text_of<'a>(node: Node<'a, '_>, tag: &str) -> Option<&'a str> {
     let child = node.children().find(|child| child.has_tag_name(tag))?;
     child.text().map(str::trim).filter(|text| !text.is_empty())
+}
+
+/// Says which contents of the whole file have no counterpart.
+fn left_aside(build: &mut Build, xml: &Xml<'_>) {
+    for (tag, what) in [
+        ("group", "groups of objects"),
+        ("finalMeasurment", "final measurements"),
+        ("backgroudImage", "background images"),
+        ("tools", "joined pieces as a history"),
+    ] {
+        let all = xml.elements().filter(|node| node.has_tag_name(tag));
+        let count = all.count();
+        if count > 0 {
+            build.losses.push(Loss {
+                what: what.to_owned(),
+                place: "the whole file".to_owned(),
+                count,
+                why: "patterns here have none".to_owned(),
+            });
+        }
+    }
 }
 
 fn done(mut build: Build) -> ValentinaReading {

@@ -6,7 +6,7 @@ use super::things::{CurveThing, PointThing, Thing};
 use roxmltree::Node;
 use std::collections::HashMap;
 use std::sync::Arc;
-use toile_geometry::Vec2;
+use toile_geometry::{Curve as Piece, Path};
 use toile_pattern::{CurveId, NotchKind, Number, PointId};
 
 /// Places nearer to each other than this are one corner of an outline (m).
@@ -44,8 +44,8 @@ pub(super) struct Stretch {
     pub ends: [PointThing; 2],
     /// Name of the curve of the file; empty for straight stretches.
     pub name: String,
-    /// Places along it for the base size (m).
-    pub places: Vec<Vec2>,
+    /// Its course for the base size (m).
+    pub path: Path,
     /// Allowance of its own, where nodes give one.
     pub allowance: Option<Number>,
     /// Whether the allowance changes along it.
@@ -60,6 +60,8 @@ pub(super) struct Outline {
     pub passmarks: Vec<(PointId, Passmark)>,
     /// Nodes that were left out, with the reasons in words.
     pub lost: Vec<String>,
+    /// Nodes that were taken otherwise, in words.
+    pub told: Vec<String>,
     /// Number of nodes.
     pub count: usize,
 }
@@ -82,6 +84,14 @@ pub(super) fn outline(
         outline.count += 1;
         if is_yes(node, "excluded") {
             continue;
+        }
+        for attribute in ["before", "after"] {
+            let width = node.attribute(attribute);
+            if let Some(Err(why)) = width.map(|text| build.slot(text, LENGTH)) {
+                outline
+                    .told
+                    .push(format!("the width {attribute} a node: {why}"));
+            }
         }
         match piece_node(build, node, modeling) {
             Ok(node) => nodes.push(node),
@@ -147,7 +157,7 @@ fn passmark(node: Node<'_, '_>) -> Option<Passmark> {
     Some(Passmark { kind, is_other })
 }
 
-/// The point of a neighbour of a curve, if it is a point.
+/// The point in which a neighbour of a curve meets it: the neighbour itself, or the nearer end of a curve.
 fn neighbour(nodes: &[PieceNode], at: usize, step: isize, is_closed: bool) -> Option<PointThing> {
     let count = nodes.len() as isize;
     let next = at as isize + step;
@@ -158,17 +168,20 @@ fn neighbour(nodes: &[PieceNode], at: usize, step: isize, is_closed: bool) -> Op
     };
     match nodes.get(usize::try_from(next).ok()?)? {
         PieceNode::Point { point, .. } => Some(*point),
-        PieceNode::Curve { .. } => None,
+        PieceNode::Curve { curve, reverse } => {
+            let is_end = (step < 0) != *reverse;
+            Some(curve.ends[usize::from(is_end)])
+        }
     }
 }
 
 /// A curve's stretch between the neighbours that lie on it, else between its own ends, in the direction of
-/// the outline.
+/// the outline. No course: these run the other way along the curve, and the outline goes straight.
 fn cut(
     curve: &CurveThing,
     reverse: bool,
     neighbours: [Option<PointThing>; 2],
-) -> ([PointThing; 2], Vec<Vec2>) {
+) -> ([PointThing; 2], Option<Path>) {
     let total = curve.path.length();
     let on = |point: Option<PointThing>| {
         let point = point?;
@@ -194,14 +207,12 @@ fn cut(
         true => ends[0].1 - ends[1].1 > SAME_CORNER,
     };
     if !runs_on {
-        ends = own;
+        return (ends.map(|end| end.0), None);
     }
     let (from, to) = (ends[0].1.min(ends[1].1), ends[0].1.max(ends[1].1));
-    let mut places = curve.path.between(from, to).flatten(1e-4);
-    if reverse {
-        places.reverse();
-    }
-    (ends.map(|end| end.0), places)
+    let path = curve.path.between(from, to);
+    let path = if reverse { path.reversed() } else { path };
+    (ends.map(|end| end.0), Some(path))
 }
 
 /// A corner that the outline has reached, with the width that begins there.
@@ -232,7 +243,7 @@ fn follow(build: &mut Build, nodes: &[PieceNode], is_closed: bool, outline: &mut
             }
             PieceNode::Curve { curve, reverse } => {
                 let neighbours = [-1, 1].map(|step| neighbour(nodes, k, step, is_closed));
-                let (ends, places) = cut(curve, *reverse, neighbours);
+                let (ends, path) = cut(curve, *reverse, neighbours);
                 if curve.sheet != build.current() {
                     let why = format!("curve {:?} belongs to another drawing", curve.name);
                     outline.lost.push(why);
@@ -240,6 +251,15 @@ fn follow(build: &mut Build, nodes: &[PieceNode], is_closed: bool, outline: &mut
                 }
                 let start = go_to(build, outline, &mut reached, ends[0], None);
                 first.get_or_insert(start);
+                let Some(path) = path else {
+                    let why = format!(
+                        "curve {:?} runs against the outline: a straight line stands for it, as there",
+                        curve.name
+                    );
+                    outline.told.push(why);
+                    go_to(build, outline, &mut reached, ends[1], None);
+                    continue;
+                };
                 let after = reached.as_ref().and_then(|reached| reached.after.clone());
                 let next = nodes.get(k + 1).or(nodes.first().filter(|_| is_closed));
                 let before = match next {
@@ -250,7 +270,7 @@ fn follow(build: &mut Build, nodes: &[PieceNode], is_closed: bool, outline: &mut
                     curve: curve.id,
                     ends: [start, ends[1]],
                     name: curve.name.clone(),
-                    places,
+                    path,
                     is_uneven: is_uneven(&after, &before),
                     allowance: after.or(before).map(|(number, _)| number),
                 });
@@ -314,7 +334,10 @@ fn go_to(
         curve,
         ends,
         name: String::new(),
-        places: ends.map(|end| end.at).to_vec(),
+        path: Path::new(vec![Piece::Line {
+            start: ends[0].at,
+            end: ends[1].at,
+        }]),
         is_uneven: is_uneven(&from.after, &before),
         allowance: from.after.or(before).map(|(number, _)| number),
     });

@@ -1,6 +1,6 @@
 //! Operations of a file: points and curves turned, moved and mirrored, each with a name of its own.
 
-use super::build::{Build, Slot, plain, reference};
+use super::build::{Build, Slot, reference};
 use super::curves::moved;
 use super::kinds::{LENGTH, Quantity};
 use super::points::{direction, unit};
@@ -8,8 +8,8 @@ use super::things::{CurveThing, PointThing, Thing};
 use roxmltree::Node;
 use std::collections::HashMap;
 use std::sync::Arc;
-use toile_geometry::{Curve as Piece, Path, Vec2};
-use toile_pattern::{CurveId, CurveRule, PointId, PointRule};
+use toile_geometry::{Bounds2, Curve as Piece, Path, Vec2};
+use toile_pattern::{CurveId, CurveRule, Number, PointId, PointRule};
 
 /// Distance of the second point of a mirror line from the first (m).
 const AXIS: f64 = 0.1;
@@ -20,6 +20,8 @@ enum Motion {
     Turned { centre: PointThing, angle: Slot },
     /// Moved in a direction.
     Moved { angle: Slot, distance: Slot },
+    /// Moved, then turned.
+    Both(Box<[Moving; 2]>),
     /// Mirrored in a line.
     Mirrored { line: [PointThing; 2] },
 }
@@ -56,14 +58,45 @@ fn turned(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
 }
 
 fn shifted(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
-    let turn = plain(build, node, "rotationAngle").unwrap_or_default();
-    if turn % 360.0 != 0.0 {
-        return Err("it moves and turns at once".to_owned());
-    }
-    Ok(Motion::Moved {
+    let moved = Motion::Moved {
         angle: build.number(node, "angle", Quantity::Angle)?,
         distance: build.number(node, "length", LENGTH)?,
-    })
+    };
+    if node.attribute("rotationAngle").is_none() {
+        return Ok(moved);
+    }
+    let angle = build.number(node, "rotationAngle", Quantity::Angle)?;
+    if angle.number == Number::ZERO {
+        return Ok(moved);
+    }
+    let centre = match reference(node, "center") {
+        Ok(number) if number > 0 => build.point(node, "center")?,
+        Ok(_) | Err(_) => middle(build, node, &moved)?,
+    };
+    let both = [moved, Motion::Turned { centre, angle }];
+    Ok(Motion::Both(Box::new(
+        both.map(|motion| Moving::new(motion, String::new())),
+    )))
+}
+
+/// The middle of what an operation moves, after that; it is kept as the base size has it.
+fn middle(build: &mut Build, node: Node<'_, '_>, motion: &Motion) -> Result<PointThing, String> {
+    let mut places = Vec::new();
+    for item in items(node, "source") {
+        match build.things.get(&reference(item, "idObject")?) {
+            Some(Thing::Point(point)) => places.push(point.at),
+            Some(Thing::Curve(curve)) => places.extend(curve.path.flatten(1e-4)),
+            None => {}
+        }
+    }
+    let places = places.into_iter().map(|at| place(motion, at));
+    let bounds = Bounds2::of(places);
+    let at = (bounds.min + bounds.max) / 2.0;
+    if !(at.x.is_finite() && at.y.is_finite()) {
+        return Err("none of its parts is there".to_owned());
+    }
+    let name = format!("middle{}", node.attribute("suffix").unwrap_or_default());
+    Ok(super::contacts::fixed(build, &name, at))
 }
 
 fn by_line(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
@@ -99,12 +132,8 @@ fn items<'a, 'i>(node: Node<'a, 'i>, list: &str) -> Vec<Node<'a, 'i>> {
 }
 
 fn carry_out(build: &mut Build, node: Node<'_, '_>, motion: Motion) -> Result<(), String> {
-    let mut moving = Moving {
-        motion,
-        suffix: node.attribute("suffix").unwrap_or_default().to_owned(),
-        points: HashMap::new(),
-        curves: HashMap::new(),
-    };
+    let suffix = node.attribute("suffix").unwrap_or_default().to_owned();
+    let mut moving = Moving::new(motion, suffix);
     let sources = items(node, "source");
     let destinations = items(node, "destination");
     if sources.len() != destinations.len() {
@@ -128,6 +157,9 @@ fn carry(
     from: Node<'_, '_>,
     to: Node<'_, '_>,
 ) -> Result<(), String> {
+    let names = ["name", "alias"].map(|attribute| from.attribute(attribute));
+    let names = names.into_iter().flatten().filter(|name| !name.is_empty());
+    let names: Vec<&str> = names.collect();
     let (from, to) = (reference(from, "idObject")?, reference(to, "idObject")?);
     let thing = build.things.get(&from).cloned();
     let thing = thing.ok_or_else(|| format!("part {from} is not there or was left out"))?;
@@ -137,34 +169,80 @@ fn carry(
             let made = moving.point(build, point)?;
             let name = format!("{}{}", build.file_name(point), moving.suffix);
             build.named.insert(name, made);
+            for name in names {
+                build.named.insert(name.to_owned(), made);
+            }
             Thing::Point(made)
         }
-        Thing::Curve(curve) => Thing::Curve(moving.curve(build, &curve)?),
+        Thing::Curve(curve) => {
+            let made = moving.curve(build, &curve, to)?;
+            for name in names {
+                build.name_also(&made.name, name);
+            }
+            Thing::Curve(made)
+        }
     };
     build.things.insert(to, made);
     Ok(())
 }
 
+/// The image of a place for the base size (m).
+fn place(motion: &Motion, at: Vec2) -> Vec2 {
+    match motion {
+        Motion::Turned { centre, angle } => {
+            let (sin, cos) = angle.value.sin_cos();
+            let way = at - centre.at;
+            centre.at + Vec2::new(way.x * cos - way.y * sin, way.x * sin + way.y * cos)
+        }
+        Motion::Moved { angle, distance } => at + direction(angle.value) * distance.value,
+        Motion::Both(both) => {
+            let moved = both.iter();
+            moved.fold(at, |at, moving| place(&moving.motion, at))
+        }
+        Motion::Mirrored { line } => {
+            let way = (line[1].at - line[0].at).normalize();
+            let offset = at - line[0].at;
+            line[0].at + way * (2.0 * offset.dot(&way)) - offset
+        }
+    }
+}
+
+/// The image of a curve for the base size.
+fn image(motion: &Motion, piece: Piece) -> Piece {
+    match motion {
+        Motion::Turned { centre, angle } => piece
+            .translated(-centre.at)
+            .rotated(angle.value)
+            .translated(centre.at),
+        Motion::Moved { angle, distance } => {
+            piece.translated(direction(angle.value) * distance.value)
+        }
+        Motion::Both(both) => {
+            let moved = both.iter();
+            moved.fold(piece, |piece, moving| image(&moving.motion, piece))
+        }
+        Motion::Mirrored { line } => piece.reflected(line[0].at, line[1].at - line[0].at),
+    }
+}
+
 impl Moving {
-    /// The image of a place for the base size (m).
-    fn place(&self, at: Vec2) -> Vec2 {
-        match &self.motion {
-            Motion::Turned { centre, angle } => {
-                let (sin, cos) = angle.value.sin_cos();
-                let way = at - centre.at;
-                centre.at + Vec2::new(way.x * cos - way.y * sin, way.x * sin + way.y * cos)
-            }
-            Motion::Moved { angle, distance } => at + direction(angle.value) * distance.value,
-            Motion::Mirrored { line } => {
-                let way = (line[1].at - line[0].at).normalize();
-                let offset = at - line[0].at;
-                line[0].at + way * (2.0 * offset.dot(&way)) - offset
-            }
+    fn new(motion: Motion, suffix: String) -> Self {
+        Self {
+            motion,
+            suffix,
+            points: HashMap::new(),
+            curves: HashMap::new(),
         }
     }
 
-    fn rule(&self, build: &Build, point: PointThing) -> Result<PointRule, String> {
+    fn rule(&mut self, build: &mut Build, point: PointThing) -> Result<PointRule, String> {
+        if let Motion::Both(both) = &mut self.motion {
+            let [first, second] = &mut **both;
+            let moved = first.point(build, point)?;
+            return second.rule(build, moved);
+        }
         Ok(match &self.motion {
+            Motion::Both(_) => return Err("it moves twice".to_owned()),
             Motion::Turned { centre, .. } if (point.at - centre.at).norm() <= 1e-9 => {
                 PointRule::Offset {
                     base: point.id,
@@ -198,23 +276,10 @@ impl Moving {
         }
         let rule = self.rule(build, point)?;
         let name = format!("{}{}", build.file_name(point), self.suffix);
-        let made = build.add_point(&name, rule, self.place(point.at));
+        let made = build.add_point(&name, rule, place(&self.motion, point.at));
         build.file_names.insert(made.id, name);
         self.points.insert(point.id, made);
         Ok(made)
-    }
-
-    fn piece(&self, piece: Piece) -> Piece {
-        match &self.motion {
-            Motion::Turned { centre, angle } => piece
-                .translated(-centre.at)
-                .rotated(angle.value)
-                .translated(centre.at),
-            Motion::Moved { angle, distance } => {
-                piece.translated(direction(angle.value) * distance.value)
-            }
-            Motion::Mirrored { line } => piece.reflected(line[0].at, line[1].at - line[0].at),
-        }
     }
 
     /// The image of a whole curve of the document.
@@ -236,14 +301,14 @@ impl Moving {
                 of: of.id,
                 line: line.map(|end| end.id),
             },
-            Motion::Turned { .. } | Motion::Moved { .. } => {
+            Motion::Turned { .. } | Motion::Moved { .. } | Motion::Both(_) => {
                 if (ends[1].at - ends[0].at).norm() <= 1e-9 {
                     return Err(format!("{} begins where it ends", of.name));
                 }
                 CurveRule::Copy { of: of.id }
             }
         };
-        let pieces = moved(&whole, |piece| self.piece(piece));
+        let pieces = moved(&whole, |piece| image(&self.motion, piece));
         let name = self.name_of(build, &whole, ends);
         let made = build.add_curve(&name, ends, rule, pieces);
         self.curves.insert(of.id, made.clone());
@@ -261,7 +326,26 @@ impl Moving {
         }
     }
 
-    fn curve(&mut self, build: &mut Build, curve: &CurveThing) -> Result<Arc<CurveThing>, String> {
+    /// Names in formulas of the image of a curve, in newer and older files.
+    fn names_of(&self, made: &CurveThing, of: &CurveThing, number: u32) -> Vec<String> {
+        let mut names = vec![made.name.clone(), format!("{}{}", of.name, self.suffix)];
+        if let Some((start, _)) = of
+            .name
+            .rsplit_once('_')
+            .filter(|_| of.name.contains("Arc_"))
+        {
+            names.push(format!("{start}_{number}"));
+        }
+        names
+    }
+
+    /// The image of a curve under a number.
+    fn curve(
+        &mut self,
+        build: &mut Build,
+        curve: &CurveThing,
+        number: u32,
+    ) -> Result<Arc<CurveThing>, String> {
         let whole = self.whole(build, curve)?;
         let made = match curve.is_whole {
             true => whole,
@@ -273,14 +357,16 @@ impl Moving {
                 Arc::new(CurveThing {
                     id: whole.id,
                     name: self.name_of(build, curve, ends),
-                    path: Path::new(moved(curve, |piece| self.piece(piece))),
+                    path: Path::new(moved(curve, |piece| image(&self.motion, piece))),
                     ends,
                     ..curve.clone()
                 })
             }
         };
-        let (name, text) = (made.name.clone(), made.length.clone());
-        build.name_length(name, &text, made.path.length());
+        let text = made.length.clone();
+        for name in self.names_of(&made, curve, number) {
+            build.name_length(name, &text, made.path.length());
+        }
         Ok(made)
     }
 }

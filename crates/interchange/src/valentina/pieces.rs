@@ -2,6 +2,7 @@
 
 use super::build::{Build, plain, reference};
 use super::kinds::{LENGTH, Quantity};
+use super::loops::leave_out_loops;
 use super::nodes::{Outline, Stretch, is_yes, outline};
 use super::things::{PointThing, Thing};
 use crate::exchange::Loss;
@@ -18,16 +19,17 @@ use toile_pattern::{
 
 /// Lengths that differ by less than this part are equal: a stretch from corner to corner is then straight.
 const STRAIGHT: f64 = 1e-4;
+/// Largest number of steps from the number of a node to the object of the drawing.
+const MAX_STEPS: usize = 8;
 
 /// Reads the pieces of a drawing as panels traced from the sheet that is built.
 pub(super) fn read(
     build: &mut Build,
     xml: &Xml<'_>,
     drawing: Node<'_, '_>,
-    fabric: FabricId,
+    (modeling, fabric): (&HashMap<u32, u32>, FabricId),
     taken: &mut BTreeSet<String>,
 ) {
-    let modeling = modeling(drawing);
     let lists = drawing
         .children()
         .filter(|node| node.has_tag_name("details") || node.has_tag_name("pieces"));
@@ -37,16 +39,17 @@ pub(super) fn read(
     {
         let name = node.attribute("name").unwrap_or("piece");
         let place = format!("line {}, piece {name:?}", xml.line(node));
-        if let Err(why) = piece(build, node, (&modeling, fabric), taken, &place) {
+        if let Err(why) = piece(build, node, (modeling, fabric), taken, &place) {
             build.left_out(place, "the piece".to_owned(), why);
         }
     }
 }
 
-/// Objects of the drawing by the numbers under which pieces know them.
-fn modeling(drawing: Node<'_, '_>) -> HashMap<u32, u32> {
-    let lists = drawing
-        .children()
+/// Objects of the drawings by the numbers under which pieces know them, also through another such number.
+pub(super) fn modeling(root: Node<'_, '_>) -> HashMap<u32, u32> {
+    let drawings = root.children();
+    let lists = drawings
+        .flat_map(|drawing| drawing.children())
         .filter(|node| node.has_tag_name("modeling"));
     let all = lists.flat_map(|list| list.children());
     let pair = |node: Node<'_, '_>| {
@@ -55,7 +58,15 @@ fn modeling(drawing: Node<'_, '_>) -> HashMap<u32, u32> {
             reference(node, "idObject").ok()?,
         ))
     };
-    all.filter(Node::is_element).filter_map(pair).collect()
+    let direct: HashMap<u32, u32> = all.filter(Node::is_element).filter_map(pair).collect();
+    let followed = |object: u32| {
+        let steps = std::iter::successors(Some(object), |at| direct.get(at).copied());
+        steps.take(MAX_STEPS).last().unwrap_or(object)
+    };
+    direct
+        .iter()
+        .map(|(&id, &object)| (id, followed(object)))
+        .collect()
 }
 
 fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
@@ -72,12 +83,33 @@ fn piece(
     let sheet = build.sheets.last().map(|own| own.sheet.id);
     let sheet = sheet.ok_or("it belongs to no drawing")?;
     let list = child(node, "nodes").unwrap_or(node);
+    name_width(build, node);
     let mut found = outline(build, list, modeling, true);
+    build.symbols.remove(OWN_WIDTH);
+    if !has_allowance(node) {
+        for stretch in &mut found.stretches {
+            stretch.allowance = None;
+            stretch.is_uneven = false;
+        }
+    }
     for why in std::mem::take(&mut found.lost) {
         build.left_out(place.to_owned(), "a node".to_owned(), why);
     }
+    for why in std::mem::take(&mut found.told) {
+        build.left_out(place.to_owned(), "a stretch of the outline".to_owned(), why);
+    }
     if found.stretches.len() < 2 {
         return Err(format!("its {} nodes make no closed outline", found.count));
+    }
+    let loops = leave_out_loops(build, &mut found);
+    if loops > 0 {
+        build.losses.push(Loss {
+            what: "loops of the outline".to_owned(),
+            place: place.to_owned(),
+            count: loops,
+            why: "it crosses itself there in the base size, and goes on from the crossing"
+                .to_owned(),
+        });
     }
     turn(&mut found);
     let name = part_name(node.attribute("name").unwrap_or("piece"), taken);
@@ -114,6 +146,7 @@ fn piece(
     if let Err(why) = fold(build, node, modeling, &found, &mut panel) {
         build.left_out(place.to_owned(), "the mirror line".to_owned(), why);
     }
+    others(build, node, place);
     if child(node, "csa").is_some_and(|csa| csa.children().any(|one| one.is_element())) {
         let why = "allowances belong to edges here".to_owned();
         build.left_out(place.to_owned(), "the drawn allowance".to_owned(), why);
@@ -127,7 +160,7 @@ fn turn(outline: &mut Outline) {
     let places: Vec<Vec2> = outline
         .stretches
         .iter()
-        .flat_map(|one| one.places.iter().copied())
+        .flat_map(|one| one.path.flatten(1e-4))
         .collect();
     let next = places.iter().cycle().skip(1);
     let twice: f64 = places.iter().zip(next).map(|(a, b)| a.perp(b)).sum();
@@ -135,7 +168,28 @@ fn turn(outline: &mut Outline) {
         outline.stretches.reverse();
         for stretch in &mut outline.stretches {
             stretch.ends.reverse();
-            stretch.places.reverse();
+            stretch.path = stretch.path.reversed();
+        }
+    }
+}
+
+/// Says which lists of a piece have no counterpart.
+fn others(build: &mut Build, node: Node<'_, '_>, place: &str) {
+    for (list, what) in [
+        ("placeLabels", "place labels"),
+        ("offsetLines", "offset lines"),
+        ("pins", "pins"),
+        ("anchors", "anchors"),
+    ] {
+        let count =
+            child(node, list).map_or(0, |list| list.children().filter(Node::is_element).count());
+        if count > 0 {
+            build.losses.push(Loss {
+                what: what.to_owned(),
+                place: place.to_owned(),
+                count,
+                why: "pieces here have none".to_owned(),
+            });
         }
     }
 }
@@ -175,10 +229,25 @@ fn line_of(
     }
 }
 
-fn allowance(build: &mut Build, node: Node<'_, '_>, panel: &mut Panel, place: &str) {
+/// Whether a piece has a seam allowance outside its outline.
+fn has_allowance(node: Node<'_, '_>) -> bool {
     let is_one = is_yes(node, "seamAllowance") || is_yes(node, "supplement");
-    let is_within = is_yes(node, "seamAllowanceBuiltIn");
-    let text = node.attribute("width").filter(|_| is_one && !is_within);
+    is_one && !is_yes(node, "seamAllowanceBuiltIn")
+}
+
+/// Name of the allowance of a piece in the formulas of its nodes.
+const OWN_WIDTH: &str = "CurrentSeamAllowance";
+
+/// Names the allowance of a piece for the formulas of its nodes.
+fn name_width(build: &mut Build, node: Node<'_, '_>) {
+    let width = node.attribute("width");
+    if let Some(Ok(slot)) = width.map(|text| build.slot(text, LENGTH)) {
+        build.name_length(OWN_WIDTH.to_owned(), &slot.text, slot.value);
+    }
+}
+
+fn allowance(build: &mut Build, node: Node<'_, '_>, panel: &mut Panel, place: &str) {
+    let text = node.attribute("width").filter(|_| has_allowance(node));
     let Some(text) = text else {
         return;
     };
@@ -339,8 +408,7 @@ fn straight(outline: &Outline, [from, to]: [PointThing; 2]) -> Option<[PointId; 
     let mut length = 0.0;
     for k in 0..count {
         let stretch = &outline.stretches[(first + k) % count];
-        let steps = stretch.places.windows(2);
-        length += steps.map(|ends| (ends[1] - ends[0]).norm()).sum::<f64>();
+        length += stretch.path.length();
         if near(stretch.ends[1].at, to.at) {
             let direct = (to.at - from.at).norm();
             let is_straight = length <= direct * (1.0 + STRAIGHT);

@@ -4,8 +4,8 @@ use super::build::{Build, attribute_of};
 use super::cuts::parts;
 use super::kinds::{LENGTH, Quantity};
 use super::things::{Made, PointThing};
-use crate::exchange::Loss;
 use roxmltree::Node;
+use std::f64::consts::FRAC_PI_2;
 use toile_geometry::{Curve as Piece, Path, Vec2};
 use toile_pattern::{Number, PointRule};
 
@@ -13,6 +13,11 @@ use toile_pattern::{Number, PointRule};
 const AXIS: f64 = 0.1;
 /// A crossing within this distance of the start of its axis is no crossing beyond it (m).
 const SAME_PLACE: f64 = 1e-9;
+/// Sine of an angle from which a corner is no straight line (1).
+const STRAIGHT: f64 = 1e-9;
+/// Reason for a point that lies where its line begins.
+const NO_DIRECTION: &str =
+    "both points of its line are in one place in the base size, so it lies there too";
 
 /// Makes the point of a tool. `None`: the tool is none of these.
 pub(super) fn point(build: &mut Build, node: Node<'_, '_>, tool: &str) -> Option<Made> {
@@ -85,16 +90,7 @@ fn along_line(build: &mut Build, node: Node<'_, '_>) -> Made {
     let read = |build: &mut Build| build.number(node, "length", LENGTH);
     let distance = with_current_length(build, [base, tip], read)?;
     if (tip.at - base.at).norm() <= 1e-12 {
-        // Between points in one place there is no direction: the point lies there too.
-        let rule = PointRule::Offset {
-            base: base.id,
-            x: 0.0.into(),
-            y: 0.0.into(),
-        };
-        let why = "both points of its line are in one place in the base size";
-        let told = Loss::at(name(node), "a direction", why);
-        build.losses.push(told);
-        return Ok(build.add_point(name(node), rule, base.at));
+        return Ok(build.at_place_of(name(node), base, NO_DIRECTION));
     }
     let way = unit(tip.at - base.at)?;
     let rule = PointRule::Toward {
@@ -121,8 +117,10 @@ fn normal(build: &mut Build, node: Node<'_, '_>) -> Made {
     };
     let further = further.filter(|angle| angle.number != Number::ZERO);
     let added = further.as_ref().map_or(0.0, |angle| angle.value);
-    let way = unit(tip.at - base.at)?;
-    let angle = way.y.atan2(way.x) + std::f64::consts::FRAC_PI_2 + added;
+    let Ok(way) = unit(tip.at - base.at) else {
+        return Ok(build.at_place_of(name(node), base, NO_DIRECTION));
+    };
+    let angle = way.y.atan2(way.x) + FRAC_PI_2 + added;
     let mut text = format!("angle(?{}, ?{}) + 90deg", base.id.0, tip.id.0);
     if let Some(further) = further {
         text = format!("{text} + {}", further.text);
@@ -174,7 +172,20 @@ pub(super) fn cross(
 fn line_intersect(build: &mut Build, node: Node<'_, '_>) -> Made {
     let first = [build.point(node, "p1Line1")?, build.point(node, "p2Line1")?];
     let second = [build.point(node, "p1Line2")?, build.point(node, "p2Line2")?];
-    cross(build, name(node), first, second)
+    Ok(crossing_or_origin(build, name(node), first, second))
+}
+
+/// The crossing of two lines; parallel ones have theirs at the origin there.
+fn crossing_or_origin(
+    build: &mut Build,
+    name: &str,
+    first: [PointThing; 2],
+    second: [PointThing; 2],
+) -> PointThing {
+    match cross(build, name, first, second) {
+        Ok(made) => made,
+        Err(why) => build.at_origin(name, &why),
+    }
 }
 
 /// A point on the axis through a point, in the direction of the attribute `angle`.
@@ -193,7 +204,7 @@ fn line_intersect_axis(build: &mut Build, node: Node<'_, '_>) -> Made {
     let base = build.point(node, "basePoint")?;
     let line = [build.point(node, "p1Line")?, build.point(node, "p2Line")?];
     let tip = axis(build, node, base)?;
-    cross(build, name(node), [base, tip], line)
+    Ok(crossing_or_origin(build, name(node), [base, tip], line))
 }
 
 fn height(build: &mut Build, node: Node<'_, '_>) -> Made {
@@ -215,10 +226,20 @@ fn bisector(build: &mut Build, node: Node<'_, '_>) -> Made {
     let read = |build: &mut Build| build.number(node, "length", LENGTH);
     let distance = with_current_length(build, [corner, first], read)?;
     let (a, b) = (unit(first.at - corner.at)?, unit(third.at - corner.at)?);
-    let half = a.perp(&b).atan2(a.dot(&b)) / 2.0;
     let start = format!("angle(?{}, ?{})", corner.id.0, first.id.0);
-    let turn = format!("angle(?{}, ?{}) - {start}", corner.id.0, third.id.0);
-    let text = format!("{start} + atan2(sin({turn}), cos({turn})) / 2");
+    // A straight angle has two halves: the one to the left of its first leg is taken.
+    let is_straight = a.dot(&b) < 0.0 && a.perp(&b).abs() <= STRAIGHT;
+    let (half, text) = match is_straight {
+        true => (FRAC_PI_2, format!("{start} + 90deg")),
+        false => {
+            let turn = format!("angle(?{}, ?{}) - {start}", corner.id.0, third.id.0);
+            let half = a.perp(&b).atan2(a.dot(&b)) / 2.0;
+            (
+                half,
+                format!("{start} + atan2(sin({turn}), cos({turn})) / 2"),
+            )
+        }
+    };
     let rule = PointRule::Polar {
         base: corner.id,
         angle: build.formula(&text)?,
@@ -264,7 +285,10 @@ fn curve_intersect_axis(build: &mut Build, node: Node<'_, '_>) -> Made {
         let (a, b) = (key(a), key(b));
         a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
     });
-    let (index, at) = best.ok_or("the axis does not meet the curve")?;
+    let Some((index, at)) = best else {
+        let name = attribute_of(node, "name")?;
+        return Ok(build.at_origin(name, "the axis does not meet the curve"));
+    };
     let rule = PointRule::LineCrossing {
         line: [base.id, tip.id],
         curve: curve.id,

@@ -4,11 +4,12 @@ use super::build::Build;
 use super::expression::Expression;
 use super::kinds::{LENGTH, PLAIN, Quantity, Symbol};
 use super::quantities::{constant, demand, quantity_of};
+use super::sizes::tables_of;
 use super::translate::{translated, value};
 use crate::FormatError;
 use crate::exchange::Companion;
-use crate::exchange::Guess;
-use crate::measurements_seamly::{SeamlyRows, SizeChoice, seamly_rows};
+use crate::exchange::{Guess, ReadOption};
+use crate::measurements_seamly::SeamlyRows;
 use crate::part_names::part_name;
 use crate::xml::Xml;
 use roxmltree::Node;
@@ -49,7 +50,7 @@ pub(super) fn measurement_file(xml: &Xml<'_>) -> Option<String> {
     let node = xml
         .elements()
         .find(|node| node.tag_name().name() == "measurements")?;
-    let path = node.text()?.trim();
+    let path = node.attribute("path").or(node.text())?.trim();
     (!path.is_empty()).then(|| path.to_owned())
 }
 
@@ -252,32 +253,31 @@ fn measurements(
 ) -> Result<(), FormatError> {
     let wanted = measurement_file(xml);
     let found = companions.first();
-    let rows = match found {
-        None => SeamlyRows::default(),
-        Some(companion) => rows_of(companion)?,
+    let tables = match found {
+        None => None,
+        Some(companion) => Some(tables_of(companion)?),
     };
+    let none = SeamlyRows::default();
+    let rows = tables.as_ref().map_or(&none, |tables| &tables.rows);
     if words.is_empty() && rows.rows.is_empty() {
         return Ok(());
     }
-    let mut table = Measurements::new();
-    let mut given: BTreeMap<&str, f64> = BTreeMap::new();
-    for (theirs, number) in &rows.rows {
-        let own = name_of(theirs);
-        let quantity = quantity_of_measurement(&own);
-        let si = match quantity {
-            Quantity::Power(_) => number * rows.metres,
-            Quantity::Angle => number.to_radians(),
-        };
-        given.entry(theirs.as_str()).or_insert(si);
-        // Measurements that are not in the catalogue are lengths in a table.
-        let is_length = quantity == LENGTH || is_angle(&own);
-        let is_kept = *number != 0.0 && !table.contains(&own) && is_length;
-        if is_kept {
-            // A name with other letters than a table may have becomes a variable below.
-            let _ = table.set(&own, si, Origin::Asked);
-        }
-    }
+    let (mut table, given) = table_of(rows);
     let complete = table.completed(Figure::Either);
+    let others: Vec<OtherSize<'_>> = tables
+        .iter()
+        .flat_map(|tables| &tables.others)
+        .map(|(name, rows)| {
+            let (table, given) = table_of(rows);
+            OtherSize {
+                id: build.pattern.ids.take(),
+                name,
+                complete: table.completed(Figure::Either),
+                table,
+                given,
+            }
+        })
+        .collect();
     let mut taken = BTreeSet::new();
     let (mut predicted, mut unknown) = (Vec::new(), Vec::new());
     for theirs in words {
@@ -315,6 +315,7 @@ fn measurements(
                     }
                 };
                 let number = build.formula(&text).unwrap_or(Number::Value(value));
+                let number = in_sizes(number, value, &others, theirs);
                 let name = theirs.trim_start_matches('@');
                 let id = add_variable(build, name, number, &mut taken);
                 (format!("?{}", id.0), value)
@@ -324,16 +325,88 @@ fn measurements(
     }
     tell(build, (found, wanted), predicted, unknown);
     if !table.is_empty() {
-        let name = found.map_or("base", |companion| stem(&companion.name));
-        let id: SizeId = build.pattern.ids.take();
-        build.pattern.base_size = Some(id);
+        let name = tables
+            .as_ref()
+            .map_or("base", |tables| tables.base.as_str());
+        add_sizes(build, name, table, others);
+    }
+    build.guesses.extend(tables.and_then(|tables| tables.guess));
+    Ok(())
+}
+
+/// A size beside the base of a table.
+struct OtherSize<'a> {
+    id: SizeId,
+    name: &'a str,
+    table: Measurements,
+    /// The table with what it does not have, predicted.
+    complete: Measurements,
+    /// Values of the file by its names (m) or (rad).
+    given: BTreeMap<&'a str, f64>,
+}
+
+/// The measurements of a file as a table, and all its values by its names (m) or (rad).
+fn table_of(rows: &SeamlyRows) -> (Measurements, BTreeMap<&str, f64>) {
+    let mut table = Measurements::new();
+    let mut given = BTreeMap::new();
+    for (theirs, number) in &rows.rows {
+        let own = name_of(theirs);
+        let quantity = quantity_of_measurement(&own);
+        let si = match quantity {
+            Quantity::Power(_) => number * rows.metres,
+            Quantity::Angle => number.to_radians(),
+        };
+        given.entry(theirs.as_str()).or_insert(si);
+        // Measurements that are not in the catalogue are lengths in a table.
+        let is_length = quantity == LENGTH || is_angle(&own);
+        let is_kept = *number != 0.0 && !table.contains(&own) && is_length;
+        if is_kept {
+            // A name with other letters than a table may have becomes a variable.
+            let _ = table.set(&own, si, Origin::Asked);
+        }
+    }
+    (table, given)
+}
+
+/// A value of a file's measurement that becomes a variable, with the values of the other sizes.
+fn in_sizes(usual: Number, value: f64, others: &[OtherSize<'_>], theirs: &str) -> Number {
+    let differs = |other: &OtherSize<'_>| {
+        let own = other.given.get(theirs).copied()?;
+        ((own - value).abs() > 1e-12).then_some((other.id, own))
+    };
+    let sizes: Vec<(SizeId, f64)> = others.iter().filter_map(differs).collect();
+    match sizes.is_empty() {
+        true => usual,
+        false => Number::PerSize {
+            usual: Box::new(usual),
+            sizes: sizes.into_iter().collect(),
+        },
+    }
+}
+
+/// Adds the base size and the others, which have the same measurements.
+fn add_sizes(build: &mut Build, base: &str, table: Measurements, others: Vec<OtherSize<'_>>) {
+    let mut taken = BTreeSet::new();
+    let names: Vec<String> = table.iter().map(|(name, _)| name.to_owned()).collect();
+    let id: SizeId = build.pattern.ids.take();
+    build.pattern.base_size = Some(id);
+    build.pattern.sizes.push(Arc::new(Size {
+        id,
+        name: part_name(base, &mut taken),
+        measurements: table,
+    }));
+    for mut other in others {
+        for name in &names {
+            if let (false, Some(value)) = (other.table.contains(name), other.complete.get(name)) {
+                let _ = other.table.set(name, value, Origin::Predicted);
+            }
+        }
         build.pattern.sizes.push(Arc::new(Size {
-            id,
-            name: part_name(name, &mut BTreeSet::new()),
-            measurements: table,
+            id: other.id,
+            name: part_name(other.name, &mut taken),
+            measurements: other.table,
         }));
     }
-    Ok(())
 }
 
 fn quantity_of_measurement(own: &str) -> Quantity {
@@ -341,27 +414,6 @@ fn quantity_of_measurement(own: &str) -> Quantity {
         true => Quantity::Angle,
         false => LENGTH,
     }
-}
-
-/// A file's name without folders and ending.
-fn stem(name: &str) -> &str {
-    let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    name.split('.').next().unwrap_or(name)
-}
-
-fn rows_of(companion: &Companion) -> Result<SeamlyRows, FormatError> {
-    let fault = |error: FormatError| FormatError {
-        place: format!("{}, {}", companion.name, error.place),
-        ..error
-    };
-    let text = std::str::from_utf8(&companion.bytes).map_err(|_| {
-        fault(FormatError::new(
-            "the whole file",
-            "the text is not UTF-8",
-            "save it as UTF-8",
-        ))
-    })?;
-    seamly_rows(text, SizeChoice::default()).map_err(fault)
 }
 
 /// Says which measurements were predicted, and which nothing is known of.
@@ -381,7 +433,7 @@ fn tell(
             what: "measurements",
             chosen: format!("{} of an average adult", listed(&predicted)),
             because: because.clone(),
-            option: "--with",
+            option: ReadOption::With,
         });
     }
     if !unknown.is_empty() {
@@ -389,7 +441,7 @@ fn tell(
             what: "unknown measurements",
             chosen: format!("10 cm or 0 degrees for {}", listed(&unknown)),
             because,
-            option: "--with",
+            option: ReadOption::With,
         });
     }
 }

@@ -140,7 +140,7 @@ fn damaged_files_are_refused_with_place_and_remedy() {
 }
 
 /// The folder of shared samples, if it is here.
-fn samples() -> Option<std::path::PathBuf> {
+pub(super) fn samples() -> Option<std::path::PathBuf> {
     let start = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let mut above = start.ancestors().map(|folder| folder.join("shared/data"));
     above.find(|folder| folder.join("valentina").is_dir())

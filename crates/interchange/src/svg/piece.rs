@@ -1,0 +1,222 @@
+//! A piece as an SVG file draws it, and the drawn piece that it becomes.
+
+use crate::Loss;
+use crate::drawn::builder::ON_VERTEX;
+use crate::drawn::inset::inset;
+use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPiece, Way};
+use toile_geometry::{Vec2, ring_area};
+use toile_pattern::{Cut, NotchKind};
+
+/// Vertices that lie nearer to the one before are repeats (m).
+const REPEAT: f64 = 1e-7;
+/// Turn of straight ways in a row that are the chords of a curve, at most (rad): 10 degrees.
+const MAX_TURN: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+/// Least number of such turns in a row.
+const MIN_TURNS: usize = 4;
+
+/// A piece, in units of the file, y down.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SvgPiece {
+    /// Its name.
+    pub name: String,
+    /// The line that is sewn, closed, if it is told from the cut line.
+    pub sew: Option<DrawnLine>,
+    /// The cut line, closed, if the file draws it.
+    pub cut: Option<DrawnLine>,
+    /// Closed lines that are cut out.
+    pub holes: Vec<DrawnLine>,
+    /// Lines drawn inside.
+    pub inside: Vec<DrawnLine>,
+    /// Places and shapes of notches.
+    pub notches: Vec<(Vec2, NotchKind)>,
+    /// Ends of the grain line.
+    pub grain: Option<[Vec2; 2]>,
+    /// Two places on the line that lies on the fold.
+    pub fold: Option<[Vec2; 2]>,
+    /// Number of pieces cut.
+    pub quantity: Cut,
+}
+
+impl SvgPiece {
+    /// The line that is its outline.
+    pub fn outline(&self) -> Option<&DrawnLine> {
+        self.sew.as_ref().or(self.cut.as_ref())
+    }
+
+    /// The piece in metres, y up; also what it lost. `inside` is the distance (m) from the cut line of a piece
+    /// that has no sew line inwards to one.
+    pub fn drawn(&self, unit: f64, inside: Option<f64>) -> (DrawnPiece, Vec<Loss>) {
+        let mut losses = Vec::new();
+        let place = |p: Vec2| Vec2::new(p.x, -p.y) * unit;
+        let line = |line: &DrawnLine| {
+            let mut line = line.mapped(place);
+            line.drop_repeats(REPEAT);
+            told_curves(&mut line);
+            line
+        };
+        let cut = self.cut.as_ref().map(line);
+        let fold = self.fold.map(|ends| ends.map(place));
+        let (outline, cut_line) = match (&self.sew, cut) {
+            (Some(sew), cut) => (line(sew), cut),
+            (None, Some(cut)) => match inside.map(|by| moved_in(&cut, fold, by)) {
+                None => (cut, None),
+                Some(Some(sew)) => (sew, Some(cut)),
+                Some(None) => {
+                    losses.push(Loss::at(
+                        &self.name,
+                        "the allowance that was asked for",
+                        "the piece is too narrow for it",
+                    ));
+                    (cut, None)
+                }
+            },
+            (None, None) => (DrawnLine::default(), None),
+        };
+        let mut outline = whole(outline);
+        let fold = fold.map(|ends| on_outline(&outline, ends).unwrap_or(ends));
+        if outline.area(0) < 0.0 {
+            outline.reverse();
+        }
+        let cut_line = cut_line.map(|mut cut| {
+            if cut.area(0) < 0.0 {
+                cut.reverse();
+            }
+            cut.chords(0).points
+        });
+        let notch = |&(at, kind): &(Vec2, NotchKind)| DrawnNotch {
+            at: place(at),
+            in_sizes: Vec::new(),
+            kind,
+        };
+        let inner = |all: &[DrawnLine], least: usize| -> Vec<DrawnLine> {
+            let all = all.iter().map(line).map(|line| match line.is_closed {
+                true => whole(line),
+                false => line,
+            });
+            all.filter(|line| line.len() >= least).collect()
+        };
+        let piece = DrawnPiece {
+            name: self.name.clone(),
+            fabric: None,
+            cut: self.quantity,
+            outline,
+            cut_line,
+            holes: inner(&self.holes, 2),
+            inside: inner(&self.inside, 2),
+            notches: self.notches.iter().map(notch).collect(),
+            grain: self.grain.map(|ends| {
+                // A grain line has no sense: it is taken to run upwards.
+                let [a, b] = ends.map(place);
+                let along = b - a;
+                let angle = along.y.atan2(along.x).rem_euclid(std::f64::consts::PI);
+                (angle * 1e9).round() / 1e9
+            }),
+            fold,
+        };
+        (piece, losses)
+    }
+}
+
+/// A closed line of at least two vertices: one that has a single curve is divided.
+fn whole(mut line: DrawnLine) -> DrawnLine {
+    if let (true, 1, Way::Cubic([a, b])) = (line.is_closed, line.len(), line.way(0)) {
+        let p = line.in_size(0)[0];
+        // De Casteljau's division at the middle.
+        let half = |a: Vec2, b: Vec2| (a + b) * 0.5;
+        let [pa, ab, bp] = [half(p, a), half(a, b), half(b, p)];
+        let [left, right] = [half(pa, ab), half(ab, bp)];
+        let middle = half(left, right);
+        line.by_size[0].push(middle);
+        line.ways = vec![Way::Cubic([pa, left]), Way::Cubic([right, bp])];
+    }
+    line
+}
+
+/// Takes straight ways in a row that turn a little at each vertex for the chords of a curve.
+fn told_curves(line: &mut DrawnLine) {
+    let count = line.len();
+    let points = line.in_size(0);
+    let is_smooth = |k: usize| {
+        let before = (k + count - 1) % count;
+        let is_straight = |k: usize| line.way(k) == Way::Straight;
+        let is_inner = line.is_closed || k > 0 && k + 1 < count;
+        let (a, b) = (
+            points[k] - points[before],
+            points[(k + 1) % count] - points[k],
+        );
+        let turn = a.perp(&b).atan2(a.dot(&b)).abs();
+        let is_turn = turn <= MAX_TURN && turn > 1e-3;
+        is_inner && is_straight(before) && is_straight(k) && is_turn
+    };
+    let smooth: Vec<bool> = (0..count).map(is_smooth).collect();
+    let mut k = 0;
+    while k < count {
+        let run = smooth[k..].iter().take_while(|smooth| **smooth).count();
+        if run >= MIN_TURNS && k > 0 {
+            for way in k - 1..k + run {
+                line.ways[way] = Way::Chord;
+            }
+        }
+        k += run.max(1);
+    }
+}
+
+/// The ends of the straight stretch of an outline on which two places lie; `None` if there is none.
+fn on_outline(outline: &DrawnLine, [a, b]: [Vec2; 2]) -> Option<[Vec2; 2]> {
+    let points = outline.in_size(0);
+    let count = points.len();
+    let along = b - a;
+    let length = along.norm();
+    let off = |p: Vec2| (along.perp(&(p - a)) / length).abs();
+    let is_on = |k: usize| {
+        let ends = [points[k % count], points[(k + 1) % count]];
+        !matches!(outline.way(k % count), Way::Cubic(_))
+            && ends.iter().all(|&end| off(end) <= ON_VERTEX)
+    };
+    let middle = (a + b) * 0.5;
+    let first = (0..count).find(|&k| {
+        let [from, to] = [points[k], points[(k + 1) % count]];
+        let way = to - from;
+        let share = (middle - from).dot(&way) / way.norm_squared();
+        is_on(k) && (0.0..=1.0).contains(&share)
+    })?;
+    let on = (1..count).take_while(|step| is_on(first + step)).count();
+    let back = (1..count)
+        .take_while(|step| is_on(first + count - step))
+        .count();
+    let ends = [first + count - back, first + on + 1];
+    Some(ends.map(|k| points[k % count]))
+}
+
+/// A sew line at a distance (m) inside a cut line, but on it along the fold; `None` if too little is left.
+fn moved_in(cut: &DrawnLine, fold: Option<[Vec2; 2]>, by: f64) -> Option<DrawnLine> {
+    let mut cut = cut.clone();
+    if cut.area(0) < 0.0 {
+        cut.reverse();
+    }
+    let is_fold = |k: usize| {
+        let count = cut.len();
+        let ends = [cut.in_size(0)[k % count], cut.in_size(0)[(k + 1) % count]];
+        fold.and_then(|fold| on_outline(&cut, fold))
+            .is_some_and(|[a, b]| {
+                let along = b - a;
+                let off = |p: &Vec2| (along.perp(&(p - a)) / along.norm()).abs() <= ON_VERTEX;
+                !matches!(cut.way(k), Way::Cubic(_)) && ends.iter().all(off)
+            })
+    };
+    let on_fold: Vec<bool> = (0..cut.len()).map(is_fold).collect();
+    let chords = cut.chords(0);
+    let vertex = |k: usize| {
+        let k = k % chords.points.len();
+        chords.starts.partition_point(|&start| start <= k) - 1
+    };
+    let moved = inset(&chords.points, |k| match on_fold[vertex(k)] {
+        true => 0.0,
+        false => by,
+    })?;
+    // Vertices of the cut line are corners of the sew line; between them it follows the chords of curves.
+    let mut line = DrawnLine::one(moved, true);
+    line.is_corner = vec![false; line.len()];
+    chords.starts.iter().for_each(|&k| line.is_corner[k] = true);
+    (ring_area(line.in_size(0)) > 0.0).then_some(line)
+}

@@ -1,0 +1,1 @@
+//! Drawings read, patterns written and read back.

@@ -1,0 +1,291 @@
+//! The bar over a pattern that was read from a file of another program: what was guessed, what was left out,
+//! and the other answers, one click away.
+
+use super::ToileApp;
+use super::dialogs::Dialog;
+use super::file_choice::ANY;
+use super::notice::Notice;
+use crate::fields::text_field;
+use crate::theme::Palette;
+use crate::tools::number;
+use egui::{Align, ComboBox, Layout, RichText, Ui};
+use std::path::{Path, PathBuf};
+use toile_pattern::{Number, Want};
+use toile_session::{
+    Choice, Command, DisplayUnit, FileUse, Format, FoundInFile, Guess, OpenOptions, ReadOption,
+    file_use,
+};
+
+/// Width of a list in the bar (pixels).
+const LIST: f32 = 110.0;
+/// Width of a field in the bar (pixels).
+const FIELD: f32 = 70.0;
+
+/// The file of another program that the pattern was read from, as long as the bar about it stands.
+pub struct ForeignFile {
+    path: PathBuf,
+    /// How it was read.
+    options: OpenOptions,
+    found: FoundInFile,
+    /// The distance to the sew line, as typed.
+    inside: String,
+}
+
+/// Another answer to a question that the file leaves open.
+enum Answered {
+    Format(Format),
+    Unit(DisplayUnit),
+    Inside(String),
+    AsksFile,
+}
+
+impl ToileApp {
+    /// Opens a pattern in place of the present one.
+    pub fn open(&mut self, path: &Path) {
+        self.open_with(path, OpenOptions::default());
+    }
+
+    /// Opens a pattern as options say, in place of the present one.
+    pub(super) fn open_with(&mut self, path: &Path, options: OpenOptions) {
+        let command = Command::OpenPattern {
+            path: path.to_owned(),
+            options: options.clone(),
+        };
+        if self.execute(command) {
+            let found = self.file_read.take();
+            self.foreign = found.filter(is_told).map(|found| ForeignFile {
+                path: path.to_owned(),
+                options,
+                found,
+                inside: String::new(),
+            });
+        } else if !self.is_open() {
+            self.refusal = Some(std::mem::take(&mut self.notice).text);
+        }
+    }
+
+    /// Takes a file that belongs to the foreign file, and reads that anew.
+    pub(super) fn read_with(&mut self, file: &Path) {
+        let Some(foreign) = &self.foreign else { return };
+        let mut options = foreign.options.clone();
+        options.with.push(file.to_owned());
+        self.read_anew(options);
+    }
+
+    /// Reads the foreign file anew, unless changes would be lost.
+    fn read_anew(&mut self, options: OpenOptions) {
+        let Some(foreign) = &self.foreign else { return };
+        if self.is_unsaved() {
+            self.notice = Notice::fault(
+                "The file would be read anew, and the changes since would be lost: undo them, or save the pattern",
+            );
+            return;
+        }
+        let path = foreign.path.clone();
+        self.open_with(&path, options);
+    }
+
+    /// Takes files that are dropped on the window: a pattern with the files that belong to it, or measurements
+    /// of the wearer, or a fabric.
+    pub(crate) fn take_files(&mut self, context: &egui::Context) {
+        let dropped = context.input(|input| {
+            let files = input.raw.dropped_files.iter();
+            files.map(|file| file.path().to_owned()).collect::<Vec<_>>()
+        });
+        // What cannot be read is told by opening it.
+        let use_of = |path: &PathBuf| file_use(path).unwrap_or(FileUse::Other);
+        let pattern = dropped
+            .iter()
+            .position(|path| use_of(path) == FileUse::Pattern);
+        let Some(first) = pattern.or_else(|| dropped.len().checked_sub(1)) else {
+            return;
+        };
+        let path = &dropped[first];
+        match use_of(path) {
+            FileUse::Wearer if self.is_open() => self.take_wearer(path),
+            FileUse::Fabric if self.is_open() => self.cut_from_file(path),
+            _ if self.is_unsaved() => {
+                self.notice = Notice::fault(
+                    "The pattern has changes that are not saved: save it, or undo them, \
+                     then drop the file again",
+                );
+            }
+            _ => {
+                let others = dropped.iter().enumerate().filter(|(k, _)| *k != first);
+                let options = OpenOptions {
+                    with: others.map(|(_, path)| path.clone()).collect(),
+                    ..OpenOptions::default()
+                };
+                self.open_with(path, options);
+            }
+        }
+    }
+
+    /// Shows the bar.
+    pub(super) fn foreign_bar(&mut self, ui: &mut Ui) {
+        let Some(foreign) = &mut self.foreign else {
+            return;
+        };
+        let palette = Palette::of(ui.ctx());
+        let mut answer = None;
+        let mut is_dismissed = false;
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                is_dismissed = ui.button("Dismiss").clicked();
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let title = foreign.found.format.title();
+                    ui.label(RichText::new(format!("Read as {title}")).strong());
+                    answer = foreign.questions(ui);
+                    let left_out = foreign.left_out();
+                    if !left_out.is_empty() {
+                        ui.separator();
+                        let words = format!("Left out: {}", left_out.join("; "));
+                        let label = RichText::new(words).color(palette.warning);
+                        ui.add(egui::Label::new(label).truncate())
+                            .on_hover_text(left_out.join("\n"));
+                    }
+                });
+            });
+        });
+        if is_dismissed {
+            self.foreign = None;
+            return;
+        }
+        let mut options = foreign.options.clone();
+        match answer {
+            None => return,
+            Some(Answered::Format(format)) => options.reading.format = Some(format),
+            Some(Answered::Unit(unit)) => options.reading.unit = Some(unit),
+            Some(Answered::Inside(text)) => {
+                match number::parse(&text, Want::Length, &self.base) {
+                    Ok(Number::Value(inside)) => options.reading.allowance_inside = Some(inside),
+                    Ok(_) => self.notice = Notice::fault("type a length, as in 10mm"),
+                    Err(fault) => self.notice = Notice::fault(fault),
+                }
+                if self.notice.is_fault() {
+                    return;
+                }
+            }
+            Some(Answered::AsksFile) => {
+                self.dialog = Some(Dialog::With(self.file_beside(ANY)));
+                return;
+            }
+        }
+        self.read_anew(options);
+    }
+}
+
+/// Whether the user is told of what reading a file found out, and may want it otherwise.
+fn is_told(found: &FoundInFile) -> bool {
+    let is_drawing = found.format.takes(ReadOption::Unit);
+    is_drawing || !found.guesses.is_empty() || !found.losses.is_empty()
+}
+
+impl ForeignFile {
+    /// What the file holds and the pattern does not, in words.
+    fn left_out(&self) -> Vec<String> {
+        self.found.losses.iter().map(ToString::to_string).collect()
+    }
+
+    /// Shows a widget for each question that the file leaves open; returns what was answered.
+    fn questions(&mut self, ui: &mut Ui) -> Option<Answered> {
+        let mut answer = None;
+        let format = self.found.format;
+        for &option in ReadOption::ALL {
+            let guesses = self
+                .found
+                .guesses
+                .iter()
+                .filter(|guess| guess.option == option);
+            let guesses: Vec<&Guess> = guesses.collect();
+            // Units and lines of drawings are often other than the file says.
+            let is_asked = format.takes(ReadOption::Unit) && option != ReadOption::With;
+            if guesses.is_empty() && !is_asked {
+                continue;
+            }
+            ui.separator();
+            match option {
+                ReadOption::Format => {
+                    let formats = Format::all().iter().copied();
+                    let chosen = list(
+                        ui,
+                        "Format",
+                        format.title(),
+                        formats.map(|f| (f, f.title())),
+                    );
+                    answer = chosen
+                        .filter(|f| *f != format)
+                        .map(Answered::Format)
+                        .or(answer);
+                }
+                ReadOption::Unit => {
+                    let given = self.options.reading.unit.map(DisplayUnit::word);
+                    let guessed = guesses.first().map(|guess| guess.chosen.clone());
+                    let now = given.map(str::to_owned).or(guessed);
+                    let now = now.unwrap_or_else(|| "as stated".to_owned());
+                    let units = DisplayUnit::all().iter().copied();
+                    let units = units.map(|unit| (unit, unit.word()));
+                    let chosen = list(ui, "Unit of the file", &now, units);
+                    answer = chosen.map(Answered::Unit).or(answer);
+                }
+                ReadOption::Inside => {
+                    let label = ui.label("Sew line inside by").id;
+                    let id = egui::Id::unique("sew line inside by");
+                    let field = ui.scope(|ui| {
+                        ui.set_max_width(FIELD);
+                        text_field(ui, id, &mut self.inside)
+                    });
+                    let field = field.inner.labelled_by(label);
+                    let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
+                    if field.lost_focus() && entered && !self.inside.trim().is_empty() {
+                        answer = Some(Answered::Inside(self.inside.clone()));
+                    }
+                }
+                ReadOption::With => {
+                    if ui.button("Add a file that belongs to it\u{2026}").clicked() {
+                        answer = Some(Answered::AsksFile);
+                    }
+                }
+            }
+            if !guesses.is_empty() {
+                let reasons = guesses.iter().map(|guess| {
+                    let Guess {
+                        what,
+                        chosen,
+                        because,
+                        ..
+                    } = guess;
+                    format!("{what}: {chosen}: {because}")
+                });
+                let reasons = reasons.collect::<Vec<_>>().join("\n");
+                let told = ui.label(RichText::new("guessed").small().italics());
+                told.on_hover_text(reasons);
+            }
+        }
+        answer
+    }
+}
+
+/// A list to choose from; returns what was chosen.
+fn list<Value>(
+    ui: &mut Ui,
+    name: &str,
+    now: &str,
+    values: impl Iterator<Item = (Value, &'static str)>,
+) -> Option<Value> {
+    let label = ui.label(name).id;
+    let mut chosen = None;
+    ComboBox::from_id_salt(name)
+        .selected_text(now)
+        .width(LIST)
+        .show_ui(ui, |ui| {
+            for (value, words) in values {
+                if ui.selectable_label(words == now, words).clicked() {
+                    chosen = Some(value);
+                }
+            }
+        })
+        .response
+        .labelled_by(label);
+    chosen
+}
