@@ -83,7 +83,8 @@ pub enum Task {
     Mesh(Mesh),
     /// Make a mannequin as OBJ, in metres, and list its measurements as asked and as got.
     Body(Box<Body>),
-    /// Flatten an open surface to a panel of least energy of its fabric, with darts where it would stretch too far.
+    /// Flatten a surface, or a region of a body, to a panel of least energy of its fabric, with darts where it would stretch
+    /// too far.
     ///
     /// Writes the panel as a pattern (NAME.toile.json), and beside it NAME-flatten.json (SI units) and NAME-strain.png
     /// (stretch in %).
@@ -468,8 +469,20 @@ pub struct Mesh {
 /// `toile flatten`.
 #[derive(Debug, Args)]
 pub struct Flatten {
-    /// The surface: a mesh with one outline (OBJ or PLY, m).
-    pub mesh: PathBuf,
+    /// The surface: a mesh (OBJ or PLY, m), with one outline unless --loop cuts a region out of it.
+    #[arg(required_unless_present = "body", conflicts_with = "body")]
+    pub mesh: Option<PathBuf>,
+    /// Or a body, as in `toile make --body`: woman, man, mean, dress-form, child-2, child-4, ... child-14, a mannequin file,
+    /// a file of measurements, FIGURE:FILE, or a mesh.
+    #[arg(long, value_name = "BODY")]
+    pub body: Option<String>,
+    /// File of a loop (JSON): places on the surface round the region to flatten, joined by shortest paths, and lines to cut.
+    #[arg(long = "loop", value_name = "FILE")]
+    pub loop_file: Option<PathBuf>,
+    /// Length of the edges that the region of a loop is meshed with. Default: a thirtieth of the side of a square as large, 2mm
+    /// to 12mm.
+    #[arg(long, value_name = "LENGTH", requires = "loop_file")]
+    pub edge: Option<Length>,
     /// Direction of the grain in space, as in 0,1,0. Default: upwards.
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub grain: Option<[f64; 3]>,

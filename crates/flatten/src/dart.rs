@@ -1,5 +1,6 @@
 //! Cuts of darts: a surface opened along edges from its outline to a vertex inside.
 
+use crate::ordered::Ordered;
 use crate::{FlattenError, Region};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -153,22 +154,4 @@ pub fn way_to(before: &[Option<u32>], vertex: u32) -> Vec<u32> {
     }
     way.reverse();
     way
-}
-
-/// A number with the order of all numbers.
-#[derive(Clone, Copy, PartialEq)]
-struct Ordered(f64);
-
-impl Eq for Ordered {}
-
-impl PartialOrd for Ordered {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Ordered {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
 }

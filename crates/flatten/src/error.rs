@@ -95,6 +95,9 @@ pub enum FlattenError {
         "no flat start without flipped triangles was found, the mesh has triangles that are too thin; mesh the surface again"
     )]
     NoStart,
+    /// A region cannot be cut out of a surface, or meshed.
+    #[error(transparent)]
+    Loop(#[from] crate::LoopError),
     /// A linear system could not be solved.
     #[error("the surface's triangles are too thin to be solved for; mesh the surface again")]
     Singular,

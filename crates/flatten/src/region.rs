@@ -223,7 +223,7 @@ fn two_sided(mesh: &TriangleMesh) -> bool {
 }
 
 /// Rings of edges with a triangle on the left alone, in order.
-fn outlines(mesh: &TriangleMesh) -> Vec<Vec<u32>> {
+pub(crate) fn outlines(mesh: &TriangleMesh) -> Vec<Vec<u32>> {
     let all = directed(mesh);
     let mut next: Vec<Option<u32>> = vec![None; mesh.positions.len()];
     for &[a, b] in &all {

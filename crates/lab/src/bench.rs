@@ -2,8 +2,8 @@
 //!
 //! # Decided with
 //! - [`crate::bench::all`], [`crate::bench::is_long`]: the list of benchmarks;
-//! - [`crate::drag`], [`crate::detect`], [`crate::factor`], [`crate::nest`], [`crate::realtime`],
-//!   [`crate::square`]: drags, contact, factors, markers, real time, frames;
+//! - [`crate::drag`], [`crate::detect`], [`crate::factor`], [`crate::flatten`], [`crate::nest`], [`crate::realtime`],
+//!   [`crate::square`]: drags, contact, factors, panels of surfaces, markers, real time, frames;
 //! - [`crate::accuracy::SECTIONS`]: tables of docs/ACCURACY.md;
 //! - [`crate::timed::Timed`], [`crate::clock`]: how a time is taken.
 //!
@@ -49,6 +49,8 @@ enum Work {
     Factor(Lattice, usize),
     /// Clothes in real time beside the method as published, one thread.
     Realtime,
+    /// Patches of a sphere to panels, one thread.
+    Flatten,
     /// Points dragged in a large pattern and in those that ship, one thread.
     Drag,
 }
@@ -57,7 +59,7 @@ impl Work {
     /// Threads it is given in turn.
     fn threads(self) -> &'static [usize] {
         match self {
-            Self::Drag | Self::Realtime => &THREADS[..1],
+            Self::Drag | Self::Realtime | Self::Flatten => &THREADS[..1],
             _ => &THREADS,
         }
     }
@@ -91,6 +93,7 @@ fn all() -> Vec<(String, Work)> {
         }
     }
     list.push(("drag".to_owned(), Work::Drag));
+    list.push(("flatten".to_owned(), Work::Flatten));
     list.push(("realtime".to_owned(), Work::Realtime));
     list.push(("nest".to_owned(), Work::Nest));
     list.push(("nest-queries".to_owned(), Work::NestQueries));
@@ -218,6 +221,7 @@ fn timed(name: &str, work: Work, threads: usize) -> Result<Timed, LabError> {
             crate::factor::factor((lattice, vertices), &mut result)?;
         }
         Work::Drag => crate::drag::drag(&mut result)?,
+        Work::Flatten => crate::flatten::patches(&mut result)?,
         Work::Realtime => crate::realtime::realtime(&mut result)?,
         Work::Nest => crate::nest::nest(threads, &mut result)?,
         Work::NestQueries => crate::nest::queries(threads, &mut result)?,

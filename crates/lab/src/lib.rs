@@ -19,6 +19,7 @@ mod elastica;
 mod error;
 mod factor;
 mod flat;
+mod flatten;
 mod freeze;
 mod hard;
 mod law_report;

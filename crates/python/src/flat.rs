@@ -81,22 +81,28 @@ impl Flat {
 /// name: of the panel. fabric: name of a fabric of the library, or path of a fabric file; default: poplin.
 /// strain: most stretch on 99 % of the area, either way (0.02 is 2 %). darts: most darts that are cut to keep it.
 /// grain: direction of the grain in space (three floats); default: upwards.
+/// loop: array (k, 3) of places on the surface in order round a region (metres), joined by shortest paths; the region,
+/// the smaller side, is cut out and flattened. Default: the whole surface, which is a disk then.
 /// ease: distance by which the surface is moved out to its front first (metres).
+/// edge: length of the edges that the region of a loop is meshed with (metres); default: one that suits its size.
 #[pyfunction]
 #[pyo3(signature = (
-    vertices, triangles, *, name = "panel", fabric = None, strain = 0.02, darts = 0, grain = None, ease = 0.0
+    vertices, triangles, r#loop = None, *, name = "panel", fabric = None, strain = 0.02, darts = 0, grain = None, ease = 0.0,
+    edge = None
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn flatten(
     py: Python<'_>,
     vertices: PyArrayLike2<'_, f64, AllowTypeChange>,
     triangles: PyArrayLike2<'_, i64, AllowTypeChange>,
+    r#loop: Option<PyArrayLike2<'_, f64, AllowTypeChange>>,
     name: &str,
     fabric: Option<String>,
     strain: f64,
     darts: usize,
     grain: Option<[f64; 3]>,
     ease: f64,
+    edge: Option<f64>,
 ) -> PyResult<Flat> {
     let vertices: Vec<[f64; 3]> = triples("vertices", vertices.as_array().rows())?;
     let indices: Vec<[i64; 3]> = triples("triangles", triangles.as_array().rows())?;
@@ -119,9 +125,14 @@ pub fn flatten(
         strain,
         darts,
         ease,
+        loop_file: None,
+        edge,
     };
+    let places = r#loop.map(|places| triples("loop", places.as_array().rows()));
+    let places: Option<Vec<[f64; 3]>> = places.transpose()?;
     let made = detached(py, || {
-        let surface = FlatSurface::of_arrays(&vertices, triangles, (name, &options))?;
+        let surface =
+            FlatSurface::of_arrays(&vertices, triangles, places.as_deref(), (name, &options))?;
         let report = surface.report.to_json();
         Ok((surface, report.unwrap_or_default()))
     });

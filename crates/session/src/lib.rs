@@ -104,7 +104,9 @@ pub use event::{Assembled, Draped, Event, FoundInFile};
 pub use export_format::{Export, ExportFormat};
 pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
 pub use fitting::OpenedProject;
-pub use flattening::{DartReport, FlatSurface, FlattenOptions, FlattenReport, flatten_mesh};
+pub use flattening::{
+    DartReport, FlatSurface, FlattenOptions, FlattenReport, SurfaceSource, flatten_to_panel,
+};
 pub use frames_export::{FramesExport, FramesOutcome, export_frames};
 pub use garment_edit::{CannotFollow, GarmentEdit};
 pub use history::HistoryStep;

@@ -330,6 +330,7 @@ def drape(
 def flatten(
     vertices: npt.ArrayLike,
     triangles: npt.ArrayLike,
+    loop: npt.ArrayLike | None = None,
     *,
     name: str = "panel",
     fabric: str | None = None,
@@ -337,4 +338,5 @@ def flatten(
     darts: int = 0,
     grain: tuple[float, float, float] | None = None,
     ease: float = 0.0,
+    edge: float | None = None,
 ) -> Flat: ...
