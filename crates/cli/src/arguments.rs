@@ -19,17 +19,17 @@
 
 use crate::batch_arguments::{Batch, JobTask};
 use crate::body_options::{BodyOptions, StanceOptions};
+use crate::convert_arguments::Convert;
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
 use crate::read_options::ReadArguments;
 use crate::seams_arguments::Seams;
-use crate::values::{blend, direction, export_format, one_size, panel_origin, share, sizes, word};
+use crate::values::{blend, direction, export_format, one_size, panel_origin, share, sizes};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
 use toile_session::{
-    Command, Export, ExportFormat, Format, OtherGarment, PanelOrigin, PictureTime, Quality,
-    SizeSelection,
+    Command, Export, ExportFormat, OtherGarment, PanelOrigin, PictureTime, Quality, SizeSelection,
 };
 
 /// Sewing patterns checked, laid out on fabric, sewn round a mannequin, draped and exported.
@@ -572,31 +572,6 @@ pub struct Body {
     /// motion, other .json a mannequin file; measurements (JSON) with --mesh.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-}
-
-/// `toile convert`.
-#[derive(Debug, Args)]
-pub struct Convert {
-    /// The pattern to read; its format is seen from its content.
-    pub input: PathBuf,
-    /// The file to write; its ending says the format: NAME.toile.json, or NAME.json for GarmentCode.
-    pub output: PathBuf,
-    /// Format to write, in place of the one that the name ends in.
-    #[arg(long, value_name = "FORMAT", value_parser = word::<Format>())]
-    pub to: Option<Format>,
-    #[command(flatten)]
-    pub read: ReadArguments,
-    /// Sizes to write in a format that holds shapes, as in S,M; or all. Default: the size that the file keeps, else the
-    /// base size.
-    #[arg(long, value_name = "NAMES", value_parser = sizes)]
-    pub size: Option<SizeSelection>,
-    /// Write all sizes, as --size all does.
-    #[arg(long, conflicts_with = "size")]
-    pub all_sizes: bool,
-    /// Point of the body that the input places its panels round: auto, floor, waist, pelvis, or its height above the
-    /// floor, as in 90cm. They are written as they stand on the floor.
-    #[arg(long, value_name = "POINT", default_value = "auto", value_parser = panel_origin)]
-    pub origin: PanelOrigin,
 }
 
 /// `toile replay`.

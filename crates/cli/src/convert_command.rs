@@ -1,6 +1,6 @@
 //! Runs `toile convert`.
 
-use crate::arguments::Convert;
+use crate::convert_arguments::Convert;
 use crate::output::{Failure, Output};
 use serde_json::{Value, json};
 use toile_session::{

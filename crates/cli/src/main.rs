@@ -10,6 +10,7 @@ mod batch_arguments;
 mod batch_commands;
 mod body_options;
 mod check_commands;
+mod convert_arguments;
 mod convert_command;
 mod flatten_command;
 mod lab_commands;
