@@ -498,7 +498,13 @@ fn twins_of_lines_make_it_astm_and_drills_and_texts_are_told() {
         .iter()
         .map(|l| (l.what.as_str(), l.count))
         .collect();
-    assert_eq!(told, [("drill holes", 1), ("texts", 1)]);
+    assert_eq!(told, [("texts", 1)]);
+    let lines = &reading.pattern.panels[0].lines;
+    let drill = lines.last().unwrap();
+    assert_eq!(
+        (drill.name.as_str(), drill.kind),
+        ("drill 1", LineKind::Internal)
+    );
 }
 
 #[test]

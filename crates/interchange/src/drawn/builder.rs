@@ -4,10 +4,12 @@
 //! one edge, straight or a spline through them. Edges of the sew line get the allowance that their distance to
 //! the cut line shows.
 
-use super::allowance::{Width, nearest, width};
-use super::corners::{corners, is_straight};
-use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece};
-use super::spline;
+use super::allowance::{Width, width};
+use super::corners::{corners, is_straight, lies_along};
+use super::cubics::{Cubics, cubics};
+use super::drill::{DRILL_LENGTH, DRILL_NAME};
+use super::marks::{Marked, OutlinePlace};
+use super::piece::{DrawnLine, DrawnPattern, DrawnPiece};
 use crate::Loss;
 use crate::part_names::part_name;
 use std::collections::BTreeSet;
@@ -22,13 +24,6 @@ use toile_pattern::{
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
 const ON_VERTEX: f64 = 2e-4;
-/// Largest distance of a notch from the line of an edge that it belongs to beyond the corner (m).
-const ON_LINE: f64 = 2e-4;
-/// Distances from a notch that differ by less count as one (m): at an allowance of 10 mm this is 1 mm along the
-/// line, nearer than notches are set to a corner.
-const AS_NEAR: f64 = 5e-5;
-/// Longest way from the sew line, or from a corner of it, to a notch on the cut line that belongs to it (m).
-const MAX_REACH: f64 = 0.06;
 /// Room between pieces that are laid side by side on the table (m).
 const ROOM: f64 = 0.03;
 /// Width of a row of pieces on the table (m).
@@ -82,6 +77,8 @@ struct Numbers {
 /// A line of a panel as built: its edges, and for each vertex of the drawn line the point made of it.
 struct Built {
     edges: Vec<Edge>,
+    /// The cubics of each edge that is no straight line.
+    curves: Vec<Option<Cubics>>,
     points: Vec<PointId>,
     /// Indices of the corners among the vertices.
     corners: Vec<usize>,
@@ -125,19 +122,17 @@ impl Builder {
             .fold
             .and_then(|ends| self.fold_vertices(&outline, ends));
         if piece.fold.is_some() && fold.is_none() {
-            self.losses.push(Loss::at(
-                &name,
-                "the fold line",
-                "it is no straight stretch of the outline",
-            ));
+            let why = "it is no straight stretch of the outline";
+            self.lost(&name, "the fold line", why);
         }
-        let further = fold.map_or(Vec::new(), |ends| ends.to_vec());
-        let mut built = self.line(&mut drawing, &mut numbers, &outline, &further);
+        let fold = fold.map(|ends| without_vertices_between(&mut outline, ends));
+        let mut built = self.line(&mut drawing, &mut numbers, &outline, fold);
         if let Some(cut_line) = &piece.cut_line {
             self.allowances(&name, &outline, &mut built, cut_line, &mut drawing);
         }
         let Built {
             edges,
+            curves,
             points,
             corners,
         } = built;
@@ -147,18 +142,32 @@ impl Builder {
             if ring_area(hole.in_size(self.base)) > 0.0 {
                 hole.reverse();
             }
-            let built = self.line(&mut drawing, &mut numbers, &hole, &[]);
+            let built = self.line(&mut drawing, &mut numbers, &hole, None);
             drawing.line(format!("hole {}", k + 1), LineKind::Hole, built.edges);
         }
         for (k, inside) in piece.inside.iter().enumerate() {
-            let built = self.line(&mut drawing, &mut numbers, inside, &[]);
+            let built = self.line(&mut drawing, &mut numbers, inside, None);
             drawing.line(format!("line {}", k + 1), LineKind::Internal, built.edges);
         }
+        self.drills(&mut drawing, &mut numbers, &piece.drills);
+        let marked = Marked {
+            outline: &outline,
+            corners: &corners,
+            curves: &curves,
+            base: self.base,
+            sizes: self.sizes.len().max(1),
+        };
         for (k, notch) in piece.notches.iter().enumerate() {
-            let Some(at) = self.mark(&outline, &points, &corners, notch) else {
-                self.losses
-                    .push(Loss::at(&name, "a notch", "it lies far from the outline"));
-                continue;
+            let at = match marked.place(notch) {
+                None => {
+                    self.lost(&name, "a notch", "it lies far from the outline");
+                    continue;
+                }
+                Some(OutlinePlace::Corner(corner)) => Mark::corner(points[corner]),
+                Some(OutlinePlace::Between { corners, shares }) => {
+                    let share = self.number(|size| shares[size]);
+                    Mark::between(corners.map(|k| points[k]), share)
+                }
             };
             // A notch at a corner is cut on both cut lines that meet there.
             let mut known = drawing.panel.notches.iter();
@@ -221,15 +230,24 @@ impl Builder {
         }
     }
 
-    /// Adds the points and curves of a line; `further` are vertices that must be corners.
+    /// Tells something that was left out of a piece.
+    fn lost(&mut self, piece: &str, what: &str, why: &str) {
+        let alike = |loss: &&mut Loss| loss.place == piece && loss.what == what && loss.why == why;
+        match self.losses.iter_mut().find(alike) {
+            Some(loss) => loss.count += 1,
+            None => self.losses.push(Loss::at(piece, what, why)),
+        }
+    }
+
+    /// Adds the points and curves of a line; `fold` are the vertices at the ends of a straight edge of it.
     fn line(
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
         line: &DrawnLine,
-        further: &[usize],
+        fold: Option<[usize; 2]>,
     ) -> Built {
-        let corners = corners(line, further);
+        let corners = corners(line, fold.as_ref().map_or(&[], |ends| ends));
         let count = line.len();
         let at = |k: usize, size: usize| line.in_size(size)[k % count];
         let points: Vec<PointId> = (0..count)
@@ -242,71 +260,118 @@ impl Builder {
             })
             .collect();
         let last = corners.len() - usize::from(!line.is_closed);
-        let mut edges = Vec::new();
+        let (mut edges, mut curves) = (Vec::new(), Vec::new());
         for (c, &from) in corners.iter().enumerate().take(last) {
             let next = corners[(c + 1) % corners.len()];
             let to = if next > from { next } else { next + count };
             numbers.edges += 1;
             let name = format!("e{}", numbers.edges);
             let ends = [points[from], points[to % count]];
-            let rule = self.curve(drawing, numbers, (from, to), &points, &at);
+            let is_fold = fold == Some([from, to % count]);
+            let curve = (!is_fold).then(|| self.curve(line, (from, to))).flatten();
+            let rule = match &curve {
+                None => CurveRule::Line,
+                Some(cubics) => {
+                    self.spline(drawing, numbers, cubics, |k| points[(from + k) % count])
+                }
+            };
             edges.push(drawing.edge(name, ends, rule));
+            curves.push(curve);
         }
         Built {
             edges,
+            curves,
             points,
             corners,
         }
     }
 
-    /// The curve through the vertices from one corner to the next.
-    fn curve(
+    /// The cubics through the vertices from one corner to the next; `None` if they lie on a straight line.
+    fn curve(&self, line: &DrawnLine, (from, to): (usize, usize)) -> Option<Cubics> {
+        let sizes = self.sizes.len().max(1);
+        let is_line = (0..sizes).all(|size| {
+            let vertices = line.in_size(size);
+            let mut stretch: Vec<Vec2> = Vec::with_capacity(to - from + 1);
+            for k in from..to {
+                let k = k % vertices.len();
+                stretch.push(vertices[k]);
+                stretch.extend(line.between_in(size, k));
+            }
+            stretch.push(vertices[to % vertices.len()]);
+            is_straight(&stretch)
+        });
+        (!is_line).then(|| cubics(line, (from, to), sizes))
+    }
+
+    /// The rule of a curve of cubics; `vertex` gives the points of its vertices by their numbers from its start.
+    fn spline(
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
-        (from, to): (usize, usize),
-        points: &[PointId],
-        at: &impl Fn(usize, usize) -> Vec2,
+        cubics: &Cubics,
+        vertex: impl Fn(usize) -> PointId,
     ) -> CurveRule {
-        let sizes = self.sizes.len().max(1);
-        let stretch = |size: usize| -> Vec<Vec2> { (from..=to).map(|k| at(k, size)).collect() };
-        if (0..sizes).all(|size| is_straight(&stretch(size))) {
-            return CurveRule::Line;
+        if cubics.has_chords {
+            let why =
+                "a smooth curve would turn back, so straight chords are kept between its vertices";
+            self.lost(&drawing.panel.name.clone(), "smoothness of a curve", why);
         }
-        let mut all = Vec::with_capacity(sizes);
-        for size in 0..sizes {
-            let (handles, overshoots) = spline::handles(&stretch(size));
-            if overshoots && size == self.base {
-                self.losses.push(Loss::at(
-                    &drawing.panel.name,
-                    "smoothness of a curve",
-                    "its vertices turn back, so straight chords are kept between them",
-                ));
-            }
-            all.push(handles);
-        }
-        let mut handle = |segment: usize, end: usize| {
+        let mut handle = |k: usize, end: usize| {
             numbers.handles += 1;
-            let rule = self.rule(|size| all[size.min(sizes - 1)][segment][end]);
+            let rule = self
+                .rule(|size| cubics.by_size[size.min(cubics.by_size.len() - 1)][k].handles[end]);
             drawing.point(format!("h{}", numbers.handles), rule)
         };
-        let segments = to - from;
+        let count = cubics.ends_at_vertex.len();
         let start = handle(0, 0);
-        let mut knots = Vec::new();
-        for k in 1..segments {
-            let before = handle(k - 1, 1);
-            let after = handle(k, 0);
+        // Handles before and after each joint of two cubics.
+        let joints: Vec<[PointId; 2]> = (1..count)
+            .map(|k| [handle(k - 1, 1), handle(k, 0)])
+            .collect();
+        let end = handle(count - 1, 1);
+        let mut vertices = 0;
+        let mut knots = Vec::with_capacity(joints.len());
+        for (k, [before, after]) in joints.into_iter().enumerate() {
+            let point = if cubics.ends_at_vertex[k] {
+                vertices += 1;
+                vertex(vertices)
+            } else {
+                numbers.points += 1;
+                let at = |size: usize| cubics.by_size[size.min(cubics.by_size.len() - 1)][k].end;
+                drawing.point(format!("p{}", numbers.points), self.rule(at))
+            };
             knots.push(Knot {
                 before,
-                point: points[(from + k) % points.len()],
+                point,
                 after,
             });
         }
-        let end = handle(segments - 1, 1);
         CurveRule::Spline {
             handles: [start, end],
             knots,
             to_length: None,
+        }
+    }
+
+    /// Adds a short line inside for each drill hole.
+    fn drills(
+        &mut self,
+        drawing: &mut PanelBuilder<'_>,
+        numbers: &mut Numbers,
+        drills: &[Vec<Vec2>],
+    ) {
+        for (k, by_size) in drills.iter().enumerate() {
+            let arm = Vec2::new(0.5 * DRILL_LENGTH, 0.0);
+            let mark = DrawnLine {
+                by_size: by_size.iter().map(|at| vec![at - arm, at + arm]).collect(),
+                ..DrawnLine::default()
+            };
+            let built = self.line(drawing, numbers, &mark, None);
+            drawing.line(
+                format!("{DRILL_NAME} {}", k + 1),
+                LineKind::Internal,
+                built.edges,
+            );
         }
     }
 
@@ -374,7 +439,7 @@ impl Builder {
         let runs_straight = |from: usize, to: usize| {
             let to = if to > from { to } else { to + count };
             let stretch: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
-            is_straight(&stretch)
+            lies_along(&stretch, ON_VERTEX)
         };
         match a != b {
             true if runs_straight(a, b) => Some([a, b]),
@@ -382,83 +447,18 @@ impl Builder {
             _ => None,
         }
     }
-
-    /// The mark of a place on an outline.
-    fn mark(
-        &self,
-        outline: &DrawnLine,
-        points: &[PointId],
-        corners: &[usize],
-        notch: &DrawnNotch,
-    ) -> Option<Mark> {
-        let vertices = outline.in_size(self.base);
-        let place = notch.at;
-        if let Some(corner) = corner_of(place, vertices, corners) {
-            return Some(Mark::corner(points[corner]));
-        }
-        let found = nearest(place, vertices).filter(|found| found.distance <= MAX_REACH)?;
-        let count = vertices.len();
-        let place = found.chord as f64 + found.share;
-        let c = corners.iter().rposition(|&corner| corner <= found.chord);
-        let c = c.unwrap_or(corners.len() - 1);
-        let from = corners[c];
-        let next = corners[(c + 1) % corners.len()];
-        let to = if next > from { next } else { next + count };
-        let [from_place, to_place] = [from, to].map(|k| k as f64);
-        let after_from = |place: f64| match place >= from_place {
-            true => place,
-            false => place + count as f64,
-        };
-        let along = after_from(place);
-        let share = |size: usize| {
-            let own = outline.in_size(size);
-            // The place of its own in this size, if that lies between the same corners.
-            let given = notch.in_sizes.get(size).copied().flatten();
-            let found = given.and_then(|at| nearest(at, own));
-            let found = found.map(|found| after_from(found.chord as f64 + found.share));
-            let along = found.filter(|along| *along <= to_place).unwrap_or(along);
-            let length = |a: f64, b: f64| length_between(own, a, b);
-            length(from_place, along) / length(from_place, to_place).max(f64::MIN_POSITIVE)
-        };
-        let ends = [points[from], points[to % count]];
-        Some(Mark::between(ends, self.number(share)))
-    }
 }
 
-/// The corner of a sew line that a place on the cut line belongs to: it lies on the line of one of the edges
-/// that meet there, beyond the corner, or no place is nearer to it than the corner.
-fn corner_of(place: Vec2, vertices: &[Vec2], corners: &[usize]) -> Option<usize> {
-    let count = vertices.len();
-    let beyond = |corner: usize, before: usize| {
-        let along = vertices[corner] - vertices[before % count];
-        let length = along.norm();
-        let out = place - vertices[corner];
-        let reach = out.dot(&along) / length;
-        let off = (along.perp(&out) / length).abs();
-        off <= ON_LINE && reach > ON_LINE && reach <= MAX_REACH
-    };
-    // Where two edges run on almost straight, a place square to the cut line is as near to their corner as to any
-    // other place.
-    let nearest = nearest(place, vertices).map_or(0.0, |found| found.distance);
-    let is_as_near = |corner: usize| (vertices[corner] - place).norm() <= nearest + AS_NEAR;
-    let mut all = corners.iter().copied();
-    all.find(|&corner| {
-        is_as_near(corner) || beyond(corner, corner + count - 1) || beyond(corner, corner + 1)
-    })
-}
-
-/// Length of a closed line between two places, each the index of a vertex and the share of the chord after it.
-fn length_between(ring: &[Vec2], from: f64, to: f64) -> f64 {
-    let count = ring.len();
-    let (mut length, mut at) = (0.0, from);
-    while at < to {
-        let k = at.floor();
-        let end = (k + 1.0).min(to);
-        let chord = ring[(k as usize + 1) % count] - ring[k as usize % count];
-        length += chord.norm() * (end - at);
-        at = end;
-    }
-    length
+/// Leaves out the vertices from one vertex to another, in the order of the line; returns the numbers of both.
+fn without_vertices_between(line: &mut DrawnLine, [from, to]: [usize; 2]) -> [usize; 2] {
+    let count = line.len();
+    let after = |k: usize| (k + count - from) % count;
+    let is_gone: Vec<bool> = (0..count)
+        .map(|k| after(k) > 0 && after(k) < after(to))
+        .collect();
+    line.remove(&is_gone);
+    let before = |k: usize| is_gone[..k].iter().filter(|is_gone| **is_gone).count();
+    [from - before(from), to - before(to)]
 }
 
 /// A width rounded to a thousandth of a millimetre.

@@ -35,6 +35,8 @@ pub(crate) struct DrawnPiece {
     pub inside: Vec<DrawnLine>,
     /// Notches.
     pub notches: Vec<DrawnNotch>,
+    /// Places of drill holes in each size (m).
+    pub drills: Vec<Vec<Vec2>>,
     /// Direction of the warp (rad), if the file draws a grain line.
     pub grain: Option<f64>,
     /// Both ends of the line that lies on the fold of the cloth, in the base size; the piece is then a half.
@@ -50,6 +52,9 @@ pub(crate) struct DrawnLine {
     pub is_closed: bool,
     /// For each vertex, whether the file marks it as a corner; empty if the file marks no corners.
     pub is_corner: Vec<bool>,
+    /// In each size, for each vertex the points of the curve between it and the next one (m); empty if the file has no
+    /// such points.
+    pub between: Vec<Vec<Vec<Vec2>>>,
 }
 
 /// A notch.
@@ -70,8 +75,15 @@ impl DrawnLine {
         Self {
             by_size: vec![points],
             is_closed,
-            is_corner: Vec::new(),
+            ..Self::default()
         }
+    }
+
+    /// The points of the curve between a vertex and the next one in a size.
+    pub fn between_in(&self, size: usize, vertex: usize) -> &[Vec2] {
+        let own = self.between.get(size).or(self.between.first());
+        let own = own.and_then(|vertices| vertices.get(vertex));
+        own.map_or(&[], Vec::as_slice)
     }
 
     /// Its vertices in a size; those of the first size where it has no others.
@@ -89,6 +101,40 @@ impl DrawnLine {
     pub fn reverse(&mut self) {
         self.by_size.iter_mut().for_each(|points| points.reverse());
         self.is_corner.reverse();
+        for stretches in &mut self.between {
+            stretches.iter_mut().for_each(|points| points.reverse());
+            stretches.reverse();
+            // What lay after a vertex lies before it now; of an open line the last stretch is empty.
+            if !stretches.is_empty() {
+                stretches.rotate_left(1);
+            }
+        }
+    }
+
+    /// Removes the vertices of these numbers; what lies between goes to the vertex before.
+    pub fn remove(&mut self, is_gone: &[bool]) {
+        for stretches in &mut self.between {
+            let mut kept: Vec<Vec<Vec2>> = Vec::new();
+            let mut first: Vec<Vec2> = Vec::new();
+            for (points, &is_gone) in std::mem::take(stretches).into_iter().zip(is_gone) {
+                match (is_gone, kept.last_mut()) {
+                    (false, _) => kept.push(points),
+                    (true, Some(last)) => last.extend(points),
+                    (true, None) => first.extend(points),
+                }
+            }
+            if let Some(last) = kept.last_mut() {
+                last.extend(first);
+            }
+            *stretches = kept;
+        }
+        let mut kept = is_gone.iter().map(|is_gone| !is_gone).cycle();
+        for points in &mut self.by_size {
+            points.retain(|_| kept.next().unwrap_or(true));
+        }
+        if !self.is_corner.is_empty() {
+            self.is_corner.retain(|_| kept.next().unwrap_or(true));
+        }
     }
 
     /// Removes vertices that lie on the one before them in every size, within a tolerance (m).
@@ -111,13 +157,7 @@ impl DrawnLine {
                 self.is_corner[before] = true;
             }
         }
-        let mut kept = gone.iter().map(|gone| !gone).cycle();
-        for points in &mut self.by_size {
-            points.retain(|_| kept.next().unwrap_or(true));
-        }
-        if !self.is_corner.is_empty() {
-            self.is_corner.retain(|_| kept.next().unwrap_or(true));
-        }
+        self.remove(&gone);
     }
 }
 
@@ -135,10 +175,14 @@ mod tests {
             ],
             is_closed: false,
             is_corner: vec![false, true, false, false],
+            between: vec![vec![vec![], vec![at(0.5)], vec![at(1.05)], vec![]]; 2],
         };
         line.drop_repeats(1e-6);
         assert_eq!(line.by_size[0], [at(0.0), at(1.0), at(1.0)]);
         assert_eq!(line.by_size[1], [at(0.0), at(1.0), at(1.1)]);
         assert_eq!(line.is_corner, [true, false, false]);
+        assert_eq!(line.between[0], [vec![at(0.5)], vec![at(1.05)], vec![]]);
+        line.reverse();
+        assert_eq!(line.between[1], [vec![at(1.05)], vec![at(0.5)], vec![]]);
     }
 }

@@ -1,0 +1,193 @@
+//! Cubics through dense points by least squares (Schneider 1990): with given directions at the ends, or free.
+
+use toile_geometry::{Curve, Vec2};
+
+/// Rounds in which the parameters of the points are moved to their nearest places.
+const ROUNDS: usize = 8;
+/// Least and greatest handle, as shares of the length of the curve (1).
+const HANDLES: [f64; 2] = [0.02, 1.5];
+/// Fewest points of a fit whose directions are free.
+const MIN_FREE: usize = 5;
+
+/// A cubic with its greatest distance from the points that it was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fit {
+    /// The handle after the start and the one before the end.
+    pub handles: [Vec2; 2],
+    /// Greatest distance of a point from the cubic, in the unit of the points.
+    pub off: f64,
+}
+
+/// The cubic from the first to the last of some points that comes nearest to all of them, with unit vectors along it
+/// at both ends.
+pub(crate) fn along(points: &[Vec2], directions: [Vec2; 2]) -> Fit {
+    fitted(points, |shares| with_directions(points, directions, shares))
+}
+
+/// The cubic from the first to the last of some points that comes nearest to all of them; `None` for few points.
+pub(crate) fn free(points: &[Vec2]) -> Option<Fit> {
+    (points.len() >= MIN_FREE).then(|| fitted(points, |shares| without_directions(points, shares)))
+}
+
+fn fitted(points: &[Vec2], handles: impl Fn(&[f64]) -> [Vec2; 2]) -> Fit {
+    let mut shares = by_length(points);
+    let mut best: Option<Fit> = None;
+    for _ in 0..ROUNDS {
+        let handles = handles(&shares);
+        let curve = curve(points, handles);
+        let off = points
+            .iter()
+            .zip(&shares)
+            .map(|(p, &t)| (curve.point(t) - p).norm());
+        let off = off.fold(0.0, f64::max);
+        if best.is_some_and(|best| best.off <= off) {
+            break;
+        }
+        best = Some(Fit { handles, off });
+        for (p, t) in points.iter().zip(&mut shares) {
+            *t = moved(&curve, *p, *t);
+        }
+    }
+    best.unwrap_or(Fit {
+        handles: chord_handles(points),
+        off: 0.0,
+    })
+}
+
+fn curve(points: &[Vec2], controls: [Vec2; 2]) -> Curve {
+    Curve::Cubic {
+        start: points[0],
+        controls,
+        end: points[points.len() - 1],
+    }
+}
+
+/// Handles of a straight line.
+pub(crate) fn chord_handles(points: &[Vec2]) -> [Vec2; 2] {
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let third = (end - start) / 3.0;
+    [start + third, end - third]
+}
+
+fn by_length(points: &[Vec2]) -> Vec<f64> {
+    let mut lengths = vec![0.0];
+    for pair in points.windows(2) {
+        lengths.push(lengths[lengths.len() - 1] + (pair[1] - pair[0]).norm());
+    }
+    let whole = lengths[lengths.len() - 1].max(f64::MIN_POSITIVE);
+    lengths.iter().map(|length| length / whole).collect()
+}
+
+/// One step of Newton's towards the place of a curve that is nearest to a point.
+fn moved(curve: &Curve, p: Vec2, t: f64) -> f64 {
+    const STEP: f64 = 1e-4;
+    if t <= 0.0 || t >= 1.0 {
+        return t;
+    }
+    let off = curve.point(t) - p;
+    let speed = curve.derivative(t);
+    let change = (curve.derivative((t + STEP).min(1.0)) - speed) / STEP;
+    let slope = speed.norm_squared() + off.dot(&change);
+    match slope > 0.0 {
+        true => (t - off.dot(&speed) / slope).clamp(0.0, 1.0),
+        false => t,
+    }
+}
+
+fn weights(t: f64) -> [f64; 4] {
+    let u = 1.0 - t;
+    [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t]
+}
+
+fn with_directions(points: &[Vec2], directions: [Vec2; 2], shares: &[f64]) -> [Vec2; 2] {
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let (mut aa, mut ab, mut bb, mut ra, mut rb) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (p, &t) in points.iter().zip(shares) {
+        let [w0, w1, w2, w3] = weights(t);
+        let (a, b) = (directions[0] * w1, directions[1] * -w2);
+        let rest = p - start * (w0 + w1) - end * (w2 + w3);
+        aa += a.dot(&a);
+        ab += a.dot(&b);
+        bb += b.dot(&b);
+        ra += a.dot(&rest);
+        rb += b.dot(&rest);
+    }
+    let length: f64 = points
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).norm())
+        .sum();
+    let determinant = aa * bb - ab * ab;
+    let both = [
+        (ra * bb - rb * ab) / determinant,
+        (rb * aa - ra * ab) / determinant,
+    ];
+    let is_sound = both.iter().all(|handle| {
+        handle.is_finite() && (HANDLES[0] * length..=HANDLES[1] * length).contains(handle)
+    });
+    let [a, b] = if is_sound { both } else { [length / 3.0; 2] };
+    [start + directions[0] * a, end - directions[1] * b]
+}
+
+fn without_directions(points: &[Vec2], shares: &[f64]) -> [Vec2; 2] {
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+    let (mut ra, mut rb) = (Vec2::zeros(), Vec2::zeros());
+    for (p, &t) in points.iter().zip(shares) {
+        let [w0, w1, w2, w3] = weights(t);
+        let rest = p - start * w0 - end * w3;
+        aa += w1 * w1;
+        ab += w1 * w2;
+        bb += w2 * w2;
+        ra += rest * w1;
+        rb += rest * w2;
+    }
+    let determinant = aa * bb - ab * ab;
+    let both = [
+        (ra * bb - rb * ab) / determinant,
+        (rb * aa - ra * ab) / determinant,
+    ];
+    match both.iter().all(|p| p.x.is_finite() && p.y.is_finite()) {
+        true => both,
+        false => chord_handles(points),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CUBIC: Curve = Curve::Cubic {
+        start: Vec2::new(0.0, 0.0),
+        controls: [Vec2::new(0.1, 0.15), Vec2::new(0.3, 0.2)],
+        end: Vec2::new(0.4, 0.0),
+    };
+
+    fn sampled(count: usize) -> Vec<Vec2> {
+        CUBIC.sample(0.0, 1.0, count)
+    }
+
+    #[test]
+    fn a_cubic_is_found_again_from_points_of_it() {
+        let directions = [0.0, 1.0].map(|t| CUBIC.derivative(t).normalize());
+        let fit = along(&sampled(30), directions);
+        assert!(fit.off < 1e-5, "{}", fit.off);
+        assert!(
+            (fit.handles[0] - Vec2::new(0.1, 0.15)).norm() < 2e-3,
+            "{}",
+            fit.handles[0]
+        );
+        let fit = free(&sampled(30)).unwrap();
+        assert!(fit.off < 2e-5, "{}", fit.off);
+        assert_eq!(free(&sampled(3)), None);
+    }
+
+    #[test]
+    fn points_of_one_place_make_no_panic() {
+        let points = [Vec2::new(0.1, 0.1); 6];
+        let fit = along(&points, [Vec2::zeros(); 2]);
+        assert!(fit.off == 0.0 && fit.handles[0].x.is_finite());
+        assert!(free(&points).unwrap().handles[0].x.is_finite());
+        // Two points have their chord.
+        assert_eq!(chord_handles(&points[..2]), [points[0]; 2]);
+    }
+}
