@@ -1,131 +1,18 @@
 //! Patterns in DXF, one small file for each trap that real files hold.
 #![allow(clippy::unwrap_used)]
 
+mod dxf_file;
+
+use dxf_file::{File, draft_of, line, point, tag, words};
 use std::f64::consts::FRAC_PI_2;
-use std::fmt::Write as _;
-use toile_interchange::{Format, ReadOptions, Reading, read};
-use toile_measure::Measurements;
-use toile_pattern::{
-    Cut, Draft, Evaluation, LineKind, NotchKind, Number, OperationKind, Pattern, Wearer,
-};
-
-/// A DXF file in parts.
-#[derive(Default)]
-struct File {
-    blocks: String,
-    inserts: String,
-    style: String,
-}
-
-fn tag(text: &mut String, code: i32, value: impl std::fmt::Display) {
-    let _ = write!(text, "{code}\r\n{value}\r\n");
-}
-
-/// A line through points; `further` are tags of the polyline.
-fn line(layer: u32, points: &[[f64; 2]], closed: bool, further: &[(i32, &str)]) -> String {
-    let mut text = String::new();
-    tag(&mut text, 0, "POLYLINE");
-    tag(&mut text, 8, layer);
-    tag(&mut text, 66, 1);
-    tag(&mut text, 70, i32::from(closed));
-    further
-        .iter()
-        .for_each(|(code, value)| tag(&mut text, *code, value));
-    for [x, y] in points {
-        tag(&mut text, 0, "VERTEX");
-        tag(&mut text, 8, layer);
-        tag(&mut text, 10, x);
-        tag(&mut text, 20, y);
-    }
-    tag(&mut text, 0, "SEQEND");
-    text
-}
-
-fn point(layer: u32, [x, y]: [f64; 2], further: &[(i32, &str)]) -> String {
-    let mut text = String::new();
-    tag(&mut text, 0, "POINT");
-    tag(&mut text, 8, layer);
-    tag(&mut text, 10, x);
-    tag(&mut text, 20, y);
-    further
-        .iter()
-        .for_each(|(code, value)| tag(&mut text, *code, value));
-    text
-}
-
-fn words(text: &str) -> String {
-    let mut out = String::new();
-    tag(&mut out, 0, "TEXT");
-    tag(&mut out, 8, 1);
-    tag(&mut out, 10, 0);
-    tag(&mut out, 20, 0);
-    tag(&mut out, 1, text);
-    out
-}
-
-impl File {
-    fn block(&mut self, name: &str, parts: &[String]) {
-        tag(&mut self.blocks, 0, "BLOCK");
-        tag(&mut self.blocks, 8, 1);
-        tag(&mut self.blocks, 2, name);
-        tag(&mut self.blocks, 70, 64);
-        tag(&mut self.blocks, 10, 0);
-        tag(&mut self.blocks, 20, 0);
-        self.blocks.extend(parts.iter().map(String::as_str));
-        tag(&mut self.blocks, 0, "ENDBLK");
-        self.insert(name, &[]);
-    }
-
-    fn insert(&mut self, name: &str, further: &[(i32, &str)]) {
-        tag(&mut self.inserts, 0, "INSERT");
-        tag(&mut self.inserts, 8, 1);
-        tag(&mut self.inserts, 2, name);
-        further
-            .iter()
-            .for_each(|(code, value)| tag(&mut self.inserts, *code, value));
-    }
-
-    fn text(&self) -> String {
-        let mut text = String::new();
-        for (name, content) in [
-            ("BLOCKS", &self.blocks),
-            ("ENTITIES", &(self.style.clone() + &self.inserts)),
-        ] {
-            tag(&mut text, 0, "SECTION");
-            tag(&mut text, 2, name);
-            text += content;
-            tag(&mut text, 0, "ENDSEC");
-        }
-        tag(&mut text, 0, "EOF");
-        text
-    }
-
-    fn read(&self) -> Reading {
-        read(self.text().as_bytes(), &ReadOptions::default(), &[]).unwrap()
-    }
-}
+use toile_interchange::{Format, ReadOptions, read};
+use toile_pattern::{Cut, Draft, LineKind, NotchKind, Number, OperationKind};
 
 /// A skirt panel of 400 x 600 mm, its hem below.
 const SKIRT: [[f64; 2]; 4] = [[0.0, 0.0], [400.0, 0.0], [400.0, 600.0], [0.0, 600.0]];
 
 fn metric(file: &mut File) {
     file.style += &words("Units: METRIC");
-}
-
-fn draft_of(pattern: &Pattern, size: Option<&str>) -> Draft {
-    let size = size.map(|name| pattern.size_named(name).unwrap().id);
-    let wearer = Wearer {
-        measurements: Measurements::adult(),
-        size,
-    };
-    let (draft, found) = Evaluation::new(pattern, wearer).draft();
-    let faults: Vec<String> = found
-        .iter()
-        .filter(|d| d.severity == toile_pattern::Severity::Error)
-        .map(ToString::to_string)
-        .collect();
-    assert_eq!(faults, [""; 0]);
-    draft
 }
 
 /// Corners of the first piece of a draft (m).

@@ -148,27 +148,27 @@ mod tests {
         })
     }
 
-    fn between(corners: [usize; 2], share: f64) -> Option<OutlinePlace> {
-        let shares = vec![share];
-        Some(OutlinePlace::Between { corners, shares })
+    #[track_caller]
+    fn assert_between(at: [f64; 2], expected: [usize; 2], share: f64) {
+        let Some(OutlinePlace::Between { corners, shares }) = place(at) else {
+            panic!("between");
+        };
+        assert_eq!(corners, expected);
+        assert!((shares[0] - share).abs() < 1e-9, "{shares:?}");
     }
 
     #[test]
     fn a_notch_on_the_line_stays_where_it_is_though_the_edge_before_points_at_it() {
-        let Some(OutlinePlace::Between { corners, shares }) = place([0.18, 0.0]) else {
-            panic!("between");
-        };
-        assert_eq!(corners, [2, 3]);
-        assert!((shares[0] - 0.2).abs() < 1e-9);
+        assert_between([0.18, 0.0], [2, 3], 0.2);
         assert_eq!(place([0.15, 0.0]), Some(OutlinePlace::Corner(2)));
-        assert_eq!(place([0.0, 0.05]), between([5, 0], 0.5));
-        assert_eq!(place([0.05, 0.0]), between([0, 2], 1.0 / 3.0));
+        assert_between([0.0, 0.05], [5, 0], 0.5);
+        assert_between([0.05, 0.0], [0, 2], 1.0 / 3.0);
     }
 
     #[test]
     fn a_notch_beyond_a_corner_belongs_to_it_and_one_far_away_nowhere() {
         assert_eq!(place([0.31, 0.0]), Some(OutlinePlace::Corner(3)));
-        assert_eq!(place([0.2, -0.01]), between([2, 3], 1.0 / 3.0));
+        assert_between([0.2, -0.01], [2, 3], 1.0 / 3.0);
         assert_eq!(place([0.2, -0.2]), None);
     }
 }
