@@ -19,6 +19,8 @@ pub enum FileKind {
     Glb,
     /// DXF, text or binary.
     Dxf,
+    /// DWG, the format of AutoCAD's drawings.
+    Dwg,
     /// SVG.
     Svg,
     /// A page of HTML.
@@ -79,6 +81,7 @@ impl FileKind {
             Self::Archive => "a compressed archive",
             Self::Glb => "a glTF binary",
             Self::Dxf => "a DXF drawing",
+            Self::Dwg => "a DWG drawing",
             Self::Svg => "an SVG drawing",
             Self::Html => "a web page",
             Self::Hpgl => "a plotter file (HPGL)",

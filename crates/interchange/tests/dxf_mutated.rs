@@ -3,14 +3,11 @@
 
 mod dxf_file;
 
-use dxf_file::{File, line, point, tag, words};
-use std::time::Instant;
+use dxf_file::{File, MOST_SECONDS, line, point, tag, timed, words};
 use toile_interchange::{Format, ReadOptions, read};
 
 /// Damaged files that are tried; `TOILE_MUTATIONS` asks for more.
 const COUNT: u64 = 2_000;
-/// Longest time for a file (s); tests share the processor, alone it is below 0.1 s.
-const MOST: f64 = 10.0;
 
 /// Numbers that look random (Marsaglia 2003).
 struct Random(u64);
@@ -198,8 +195,8 @@ fn damaged_files_are_read_or_refused_with_a_place_and_a_remedy() {
             allowance_inside: (random.below(4) == 0).then_some(0.01),
             ..ReadOptions::default()
         };
-        let start = Instant::now();
-        match read(&bytes, &options, &[]) {
+        let (found, seconds) = timed(|| read(&bytes, &options, &[]));
+        match found {
             Ok(reading) => assert!(!reading.pattern.panels.is_empty(), "{seed}"),
             Err(error) => {
                 refused += 1;
@@ -207,9 +204,8 @@ fn damaged_files_are_read_or_refused_with_a_place_and_a_remedy() {
                 assert!(says.iter().all(|text| !text.is_empty()), "{seed}: {error}");
             }
         }
-        let seconds = start.elapsed().as_secs_f64();
         slowest = slowest.max(seconds);
-        assert!(seconds < MOST, "{seed}: {seconds} s");
+        assert!(seconds < MOST_SECONDS, "{seed}: {seconds} s");
     }
     assert!(
         refused > 0 && refused < count,
@@ -249,9 +245,9 @@ fn files_that_are_large_without_sense_are_refused_or_read_soon() {
         (vertices, "more than 1000000 vertices"),
         (circles, "more than"),
     ] {
-        let start = Instant::now();
-        let error = read(text.as_bytes(), &ReadOptions::default(), &[]).unwrap_err();
+        let (found, seconds) = timed(|| read(text.as_bytes(), &ReadOptions::default(), &[]));
+        let error = found.unwrap_err();
         assert!(error.what.contains(what), "{error}");
-        assert!(start.elapsed().as_secs_f64() < MOST, "{what}");
+        assert!(seconds < MOST_SECONDS, "{what}: {seconds} s");
     }
 }

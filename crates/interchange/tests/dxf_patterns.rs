@@ -448,3 +448,61 @@ fn outlines_without_blocks_are_pieces_and_a_drawing_without_any_is_refused() {
     .unwrap_err();
     assert!(empty.what.contains("no closed line"), "{empty}");
 }
+
+#[test]
+fn files_that_hold_no_pattern_in_text_are_refused_by_name_with_a_remedy() {
+    let mut marker = File::default();
+    for (code, value) in [
+        (0, "POLYLINE"),
+        (8, "CUT"),
+        (70, "1"),
+        (0, "SEQEND"),
+        (0, "TEXT"),
+        (8, "TEXT"),
+        (1, "Shirt, poplin"),
+    ] {
+        tag(&mut marker.style, code, value);
+    }
+    let marker = marker.text();
+    let cases: [(&[u8], &str, &str); 4] = [
+        (b"AutoCAD Binary DXF\r\n\x1a\0", "binary", "DXF in text"),
+        (b"AC1032\0\0\0\0", "a DWG drawing", "save it as DXF"),
+        (
+            marker.as_bytes(),
+            "a marker that `toile nest` wrote (Shirt, poplin)",
+            "NAME.toile.json",
+        ),
+        (b"%PDF-1.7\n", "a PDF", "patterns are read from"),
+    ];
+    for (bytes, what, remedy) in cases {
+        let error = read(bytes, &ReadOptions::default(), &[]).unwrap_err();
+        assert!(
+            error.what.contains(what) && error.hint.contains(remedy),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn cut_outs_that_cannot_be_cut_out_and_lines_without_area_are_told() {
+    let mut file = File::default();
+    metric(&mut file);
+    let across = [[350.0, 50.0], [450.0, 50.0], [450.0, 90.0]];
+    let flat = [[10.0, 10.0], [20.0, 10.0], [30.0, 10.0]];
+    let parts = [
+        line(1, &SKIRT, true, &[]),
+        line(11, &across, true, &[]),
+        line(11, &[[20.0, 500.0], [60.0, 500.0]], false, &[]),
+        line(1, &flat, true, &[]),
+    ];
+    file.block("BACK", &parts);
+    file.block("EMPTY", &[words("NOTE")]);
+    let reading = file.read();
+    let told = reading.losses.iter().map(|loss| loss.what.as_str());
+    assert_eq!(
+        told.collect::<Vec<_>>(),
+        ["blocks", "cut-outs", "closed cut lines", "a cut-out"]
+    );
+    let kinds = reading.pattern.panels[0].lines.iter().map(|line| line.kind);
+    assert!(kinds.eq([LineKind::Outline, LineKind::Internal, LineKind::Internal]));
+}

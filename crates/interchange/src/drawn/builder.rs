@@ -4,17 +4,18 @@
 //! one edge, straight or a spline through them. Edges of the sew line get the allowance that their distance to
 //! the cut line shows.
 
-use super::allowance::{Width, width};
 use super::corners::{corners, is_straight, lies_along};
 use super::cubics::{Cubics, cubics};
+use super::cut_fit::{CutFit, cut_fit, edges_of, ring_of};
 use super::drill::{DRILL_LENGTH, DRILL_NAME};
+use super::holes::sound_holes;
 use super::marks::{Marked, OutlinePlace};
 use super::piece::{DrawnLine, DrawnPattern, DrawnPiece};
 use crate::Loss;
 use crate::part_names::part_name;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use toile_geometry::{Bounds2, Vec2, ring_area};
+use toile_geometry::{Bounds2, Polygon, Vec2, ring_area};
 use toile_pattern::{
     CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number, Operation,
     OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
@@ -24,6 +25,8 @@ use toile_pattern::{
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
 const ON_VERTEX: f64 = 2e-4;
+/// Share of the vertices of a cut line that may lie elsewhere than allowances put them (1).
+const MAX_OFF_SHARE: f64 = 0.5;
 /// Room between pieces that are laid side by side on the table (m).
 const ROOM: f64 = 0.03;
 /// Width of a row of pieces on the table (m).
@@ -74,6 +77,12 @@ struct Numbers {
     edges: usize,
 }
 
+/// Corners of a line, and the cubics of each edge that is no straight line.
+struct Curved {
+    corners: Vec<usize>,
+    curves: Vec<Option<Cubics>>,
+}
+
 /// A line of a panel as built: its edges, and for each vertex of the drawn line the point made of it.
 struct Built {
     edges: Vec<Edge>,
@@ -118,17 +127,35 @@ impl Builder {
         let mut ids = self.pattern.ids;
         let mut drawing = PanelBuilder::new(&mut ids, &name, fabric);
         let mut numbers = Numbers::default();
-        let fold = piece
-            .fold
-            .and_then(|ends| self.fold_vertices(&outline, ends));
-        if piece.fold.is_some() && fold.is_none() {
-            let why = "it is no straight stretch of the outline";
-            self.lost(&name, "the fold line", why);
+        let mut fold = self.fold(&name, piece, &mut outline);
+        let mut curved = self.smooth(&name, &mut outline, fold);
+        let mut inside = piece.inside.clone();
+        let mut fit = self.cut_fit(piece, &outline, &curved);
+        if let (Some(cut), true) = (
+            &piece.cut_outline,
+            fit.as_ref().is_some_and(is_no_allowance),
+        ) {
+            let why = "the cut line is at no even distance from it: the cut line is the outline, the sew line a line inside";
+            self.lost(&name, "a sew line", why);
+            inside.push(piece.outline.clone());
+            outline = cut.clone();
+            if ring_area(outline.in_size(self.base)) < 0.0 {
+                outline.reverse();
+            }
+            fold = self.fold(&name, piece, &mut outline);
+            curved = self.smooth(&name, &mut outline, fold);
+            fit = None;
         }
-        let fold = fold.map(|ends| without_vertices_between(&mut outline, ends));
-        let mut built = self.line(&mut drawing, &mut numbers, &outline, fold);
-        if let Some(cut_line) = &piece.cut_line {
-            self.allowances(&name, &outline, &mut built, cut_line, &mut drawing);
+        let edges = edges_of(&outline, (&curved.corners, &curved.curves), self.base);
+        let (holes, others) = sound_holes(ring_of(&edges), &piece.holes, self.base);
+        for hole in others {
+            let why = "it crosses the outline or another cut-out; kept as a line inside";
+            self.lost(&name, "a cut-out", why);
+            inside.push(hole);
+        }
+        let mut built = self.line(&mut drawing, &mut numbers, &outline, curved);
+        if let Some(fit) = fit {
+            self.allowances(&name, fit, &mut built.edges, &mut drawing);
         }
         let Built {
             edges,
@@ -137,16 +164,20 @@ impl Builder {
             corners,
         } = built;
         let line = drawing.line("outline", LineKind::Outline, edges);
-        for (k, hole) in piece.holes.iter().enumerate() {
-            let mut hole = hole.clone();
+        for (k, mut hole) in holes.into_iter().enumerate() {
             if ring_area(hole.in_size(self.base)) > 0.0 {
                 hole.reverse();
             }
-            let built = self.line(&mut drawing, &mut numbers, &hole, None);
+            let built = self.line(&mut drawing, &mut numbers, &hole, self.curved(&hole, None));
             drawing.line(format!("hole {}", k + 1), LineKind::Hole, built.edges);
         }
-        for (k, inside) in piece.inside.iter().enumerate() {
-            let built = self.line(&mut drawing, &mut numbers, inside, None);
+        for (k, inside) in inside.iter().enumerate() {
+            let built = self.line(
+                &mut drawing,
+                &mut numbers,
+                inside,
+                self.curved(inside, None),
+            );
             drawing.line(format!("line {}", k + 1), LineKind::Internal, built.edges);
         }
         self.drills(&mut drawing, &mut numbers, &piece.drills);
@@ -239,15 +270,53 @@ impl Builder {
         }
     }
 
-    /// Adds the points and curves of a line; `fold` are the vertices at the ends of a straight edge of it.
+    /// Corners and curves of a line; `fold` are the vertices at the ends of a straight edge of it.
+    fn curved(&self, line: &DrawnLine, fold: Option<[usize; 2]>) -> Curved {
+        let corners = corners(line, fold.as_ref().map_or(&[], |ends| ends));
+        let count = line.len();
+        let edges = corners.len() - usize::from(!line.is_closed);
+        let curve = |c: usize| {
+            let [from, next] = [corners[c], corners[(c + 1) % corners.len()]];
+            let to = if next > from { next } else { next + count };
+            let is_fold = fold == Some([from, next]);
+            (!is_fold).then(|| self.curve(line, (from, to))).flatten()
+        };
+        let curves = (0..edges).map(curve).collect();
+        Curved { corners, curves }
+    }
+
+    /// Corners and curves of an outline. Where smooth curves would cross each other in some size, and its chords do not,
+    /// all its vertices become corners.
+    fn smooth(&mut self, name: &str, outline: &mut DrawnLine, fold: Option<[usize; 2]>) -> Curved {
+        let curved = self.curved(outline, fold);
+        let is_sound = |size: usize| {
+            let edges = edges_of(outline, (&curved.corners, &curved.curves), size);
+            let vertices = outline.in_size(size);
+            let points = ring_of(&edges);
+            // Straight lines cross where their vertices do.
+            points.len() == edges.len()
+                || Polygon::new(points).defects().is_empty()
+                || !Polygon::new(vertices.to_vec()).defects().is_empty()
+        };
+        if (0..outline.by_size.len()).all(is_sound) {
+            return curved;
+        }
+        let why =
+            "its curves would cross each other, so straight chords are kept between all vertices";
+        self.lost(name, "smoothness of an outline", why);
+        outline.is_corner = vec![true; outline.len()];
+        outline.between.clear();
+        self.curved(outline, fold)
+    }
+
+    /// Adds the points and curves of a line.
     fn line(
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
         line: &DrawnLine,
-        fold: Option<[usize; 2]>,
+        Curved { corners, curves }: Curved,
     ) -> Built {
-        let corners = corners(line, fold.as_ref().map_or(&[], |ends| ends));
         let count = line.len();
         let at = |k: usize, size: usize| line.in_size(size)[k % count];
         let points: Vec<PointId> = (0..count)
@@ -259,24 +328,20 @@ impl Builder {
                 )
             })
             .collect();
-        let last = corners.len() - usize::from(!line.is_closed);
-        let (mut edges, mut curves) = (Vec::new(), Vec::new());
-        for (c, &from) in corners.iter().enumerate().take(last) {
+        let mut edges = Vec::with_capacity(curves.len());
+        for (c, curve) in curves.iter().enumerate() {
+            let from = corners[c];
             let next = corners[(c + 1) % corners.len()];
-            let to = if next > from { next } else { next + count };
             numbers.edges += 1;
             let name = format!("e{}", numbers.edges);
-            let ends = [points[from], points[to % count]];
-            let is_fold = fold == Some([from, to % count]);
-            let curve = (!is_fold).then(|| self.curve(line, (from, to))).flatten();
-            let rule = match &curve {
+            let ends = [points[from], points[next]];
+            let rule = match curve {
                 None => CurveRule::Line,
                 Some(cubics) => {
                     self.spline(drawing, numbers, cubics, |k| points[(from + k) % count])
                 }
             };
             edges.push(drawing.edge(name, ends, rule));
-            curves.push(curve);
         }
         Built {
             edges,
@@ -366,7 +431,7 @@ impl Builder {
                 by_size: by_size.iter().map(|at| vec![at - arm, at + arm]).collect(),
                 ..DrawnLine::default()
             };
-            let built = self.line(drawing, numbers, &mark, None);
+            let built = self.line(drawing, numbers, &mark, self.curved(&mark, None));
             drawing.line(
                 format!("{DRILL_NAME} {}", k + 1),
                 LineKind::Internal,
@@ -375,49 +440,64 @@ impl Builder {
         }
     }
 
-    /// Sets the allowances of the edges of an outline.
+    /// The vertices at the ends of the fold of a piece; those between are left out of the outline.
+    fn fold(
+        &mut self,
+        name: &str,
+        piece: &DrawnPiece,
+        outline: &mut DrawnLine,
+    ) -> Option<[usize; 2]> {
+        let ends = self.fold_vertices(outline, piece.fold?);
+        if ends.is_none() {
+            let why = "it is no straight stretch of the outline";
+            self.lost(name, "the fold line", why);
+        }
+        ends.map(|ends| without_vertices_between(outline, ends))
+    }
+
+    /// Allowances and corners by which the cut line of a piece follows from its outline.
+    fn cut_fit(&self, piece: &DrawnPiece, outline: &DrawnLine, curved: &Curved) -> Option<CutFit> {
+        let drawn = piece.cut_line.as_ref()?;
+        let edges = edges_of(outline, (&curved.corners, &curved.curves), self.base);
+        // The cut line curves between its vertices, as the sew line does.
+        let dense = piece.cut_outline.as_ref().map(|cut| {
+            let curved = self.curved(cut, None);
+            ring_of(&edges_of(cut, (&curved.corners, &curved.curves), self.base))
+        });
+        Some(cut_fit(&edges, (drawn, dense.as_deref().unwrap_or(drawn))))
+    }
+
+    /// Sets the allowances and corners of the edges of an outline.
     fn allowances(
         &mut self,
         name: &str,
-        outline: &DrawnLine,
-        built: &mut Built,
-        cut_line: &[Vec2],
+        fit: CutFit,
+        edges: &mut [Edge],
         drawing: &mut PanelBuilder<'_>,
     ) {
-        let vertices = outline.in_size(self.base);
-        let count = vertices.len();
-        let mut uneven = 0;
-        let widths: Vec<f64> = built
-            .corners
-            .iter()
-            .enumerate()
-            .map(|(c, &from)| {
-                let next = built.corners[(c + 1) % built.corners.len()];
-                let to = if next > from { next } else { next + count };
-                let edge: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
-                match width(&edge, cut_line) {
-                    Width::Even(width) => rounded(width),
-                    Width::Uneven(mean) => {
-                        uneven += 1;
-                        rounded(mean)
-                    }
-                }
-            })
-            .collect();
-        if uneven > 0 {
+        let all = [
+            (
+                fit.uneven,
+                "seam allowances of uneven width",
+                "their mean width is taken",
+            ),
+            (
+                fit.other_corners,
+                "corners of the cut line",
+                "they turn in a way that no corner here does",
+            ),
+        ];
+        for (count, what, why) in all.into_iter().filter(|(count, ..)| *count > 0) {
             self.losses.push(Loss {
-                count: uneven,
-                ..Loss::at(
-                    name,
-                    "seam allowances of uneven width",
-                    "their mean width is taken",
-                )
+                count,
+                ..Loss::at(name, what, why)
             });
         }
-        let usual = most_common(&widths);
+        let usual = most_common(&fit.widths);
         drawing.panel.allowance = usual.into();
-        for (edge, width) in built.edges.iter_mut().zip(widths) {
+        for ((edge, width), corner) in edges.iter_mut().zip(fit.widths).zip(fit.corners) {
             edge.allowance = (width != usual).then(|| width.into());
+            edge.corner = corner;
         }
     }
 
@@ -461,9 +541,9 @@ fn without_vertices_between(line: &mut DrawnLine, [from, to]: [usize; 2]) -> [us
     [from - before(from), to - before(to)]
 }
 
-/// A width rounded to a thousandth of a millimetre.
-fn rounded(width: f64) -> f64 {
-    (width * 1e6).round() / 1e6
+/// Whether the cut line of a piece follows from its sew line by no allowances.
+fn is_no_allowance(fit: &CutFit) -> bool {
+    2 * fit.uneven > fit.widths.len() && fit.off_share > MAX_OFF_SHARE
 }
 
 /// The value that occurs most often, the first of equals; 0 without values.

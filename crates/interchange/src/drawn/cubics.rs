@@ -36,18 +36,24 @@ pub(crate) struct Cubics {
 }
 
 impl Cubics {
+    /// The cubics in a size.
+    pub fn curves(&self, size: usize) -> Vec<Curve> {
+        let mut start = self.starts[size];
+        let own = self.by_size[size].iter();
+        own.map(|cubic| Curve::Cubic {
+            start: std::mem::replace(&mut start, cubic.end),
+            controls: cubic.handles,
+            end: cubic.end,
+        })
+        .collect()
+    }
+
     /// Lengths of the curve from vertex to vertex in a size (m).
     pub fn lengths(&self, size: usize) -> Vec<f64> {
         let mut lengths = Vec::new();
-        let (mut start, mut length) = (self.starts[size], 0.0);
-        for (cubic, &is_vertex) in self.by_size[size].iter().zip(&self.ends_at_vertex) {
-            let curve = Curve::Cubic {
-                start,
-                controls: cubic.handles,
-                end: cubic.end,
-            };
+        let mut length = 0.0;
+        for (curve, &is_vertex) in self.curves(size).iter().zip(&self.ends_at_vertex) {
             length += curve.length();
-            start = cubic.end;
             if is_vertex {
                 lengths.push(length);
                 length = 0.0;

@@ -8,7 +8,9 @@ const ROUNDS: usize = 24;
 /// Rounds in which whole distances count, not those square to the cubic alone.
 const FIRST_ROUNDS: usize = 2;
 /// Distance of the points from the cubic that is good enough (m).
-const ENOUGH: f64 = 1e-6;
+const ENOUGH: f64 = 4e-6;
+/// Share of the best distance that a round must come below for another to follow (1).
+const BETTER: f64 = 0.95;
 /// Least and greatest handle, as shares of the length of the curve (1).
 const HANDLES: [f64; 2] = [0.02, 1.5];
 /// Fewest points of a fit whose directions are free.
@@ -53,10 +55,11 @@ fn fitted(points: &[Vec2], handles: impl Fn(&[f64], Option<&Curve>) -> [Vec2; 2]
         let places = points.iter().zip(&shares);
         let off = places.map(|(p, &t)| (curve.point(t) - p).norm());
         let off = off.fold(0.0, f64::max);
+        let is_better = best.is_none_or(|best| off < BETTER * best.off);
         if best.is_none_or(|best| off < best.off) {
             best = Some(Fit { handles, off });
         }
-        if off <= ENOUGH {
+        if off <= ENOUGH || round > 2 * FIRST_ROUNDS && !is_better {
             break;
         }
         last = Some(curve);

@@ -105,7 +105,7 @@ fn corner_of(place: Vec2, vertices: &[Vec2], corners: &[usize]) -> Option<usize>
         let off = (along.perp(&out) / length).abs();
         off <= ON_LINE && reach > ON_LINE && reach <= MAX_REACH
     };
-    // Where two edges run on almost straight, a place square to the cut line is as near to their corner as to any
+    // At two edges that run on almost straight, a place square to the cut line is as near to their corner as to any
     // other place.
     let nearest = nearest(place, vertices).map_or(0.0, |found| found.distance);
     // A place on the line itself belongs there, though another edge may point at it.

@@ -29,6 +29,8 @@ pub(crate) struct DrawnPiece {
     pub outline: DrawnLine,
     /// The cut line in the base size, if it is another than the outline.
     pub cut_line: Option<Vec<Vec2>>,
+    /// The cut line in all sizes, where the file has it so.
+    pub cut_outline: Option<DrawnLine>,
     /// Closed lines that are cut out.
     pub holes: Vec<DrawnLine>,
     /// Lines drawn inside.
@@ -46,7 +48,7 @@ pub(crate) struct DrawnPiece {
 /// A line through vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct DrawnLine {
-    /// Its vertices in each size (m); all sizes have as many. A closed line does not repeat its start.
+    /// Vertices in each size (m); all sizes have as many. A closed line does not repeat its start.
     pub by_size: Vec<Vec<Vec2>>,
     /// Whether it runs back to its first vertex.
     pub is_closed: bool,
@@ -60,11 +62,11 @@ pub(crate) struct DrawnLine {
 /// A notch.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DrawnNotch {
-    /// Its place on or beside the outline in the base size (m).
+    /// Place on or beside the outline in the base size (m).
     pub at: Vec2,
-    /// Its places in all sizes (m), where the file has them; else it keeps its share between two vertices.
+    /// Places in all sizes (m), where the file has them; else it keeps its share between two vertices.
     pub in_sizes: Vec<Option<Vec2>>,
-    /// Its shape.
+    /// Shape of the cut.
     pub kind: NotchKind,
 }
 
@@ -86,7 +88,7 @@ impl DrawnLine {
         own.map_or(&[], Vec::as_slice)
     }
 
-    /// Its vertices in a size; those of the first size where it has no others.
+    /// Vertices in a size; those of the first size where it has no others.
     pub fn in_size(&self, size: usize) -> &[Vec2] {
         let own = self.by_size.get(size).or(self.by_size.first());
         own.map_or(&[], Vec::as_slice)
@@ -104,7 +106,7 @@ impl DrawnLine {
         for stretches in &mut self.between {
             stretches.iter_mut().for_each(|points| points.reverse());
             stretches.reverse();
-            // What lay after a vertex lies before it now; of an open line the last stretch is empty.
+            // The stretch after a vertex is before it now; of an open line the last stretch is empty.
             if !stretches.is_empty() {
                 stretches.rotate_left(1);
             }

@@ -15,7 +15,7 @@ const ON_FOLD: f64 = 1e-3;
 /// Share of the square of its length below which a closed line encloses nothing (1).
 const FLAT: f64 = 1e-6;
 
-/// What a layer of the standards holds.
+/// Contents of a layer of the standards holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layer {
     Cut,
@@ -67,7 +67,7 @@ impl Layer {
 /// A line in a block, in the units of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct BlockLine {
-    /// Its vertices.
+    /// Vertices in order.
     pub points: Vec<Vec2>,
     pub is_closed: bool,
     /// For each vertex the points of a curve between it and the next one; empty if there are none on the line.
@@ -109,7 +109,7 @@ impl BlockLine {
         ring_area(&self.points).abs()
     }
 
-    /// Its length, without the way back to its start.
+    /// Length of the line, without the way back to its start.
     pub fn length(&self) -> f64 {
         self.points
             .windows(2)
@@ -128,7 +128,7 @@ fn bits(p: Vec2) -> [u64; 2] {
 pub(super) struct BlockPiece {
     /// Name of the block.
     pub block: String,
-    /// Its texts.
+    /// Texts of the piece.
     pub labels: Labels,
     /// Closed lines of the cut layer, the largest first.
     pub cut: Vec<BlockLine>,
@@ -346,7 +346,7 @@ impl BlockPiece {
         self.turn_points.len() + self.notches.len() + self.notch_lines.len()
     }
 
-    /// Its size, as its label says.
+    /// The size, as its label says.
     pub fn size(&self) -> Option<&str> {
         self.labels.value(&["size", "sizename"])
     }

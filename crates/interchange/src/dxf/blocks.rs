@@ -11,7 +11,7 @@ use toile_geometry::Vec2;
 /// Most pieces of a file, each size counted.
 const MAX_PIECES: usize = 20_000;
 
-/// What the blocks of a drawing hold.
+/// Contents of the blocks of a drawing hold.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pieces {
     /// The pieces, in the order of the file.
@@ -94,7 +94,7 @@ impl Pieces {
             let labels = piece.labels.clone();
             let own = split(piece);
             if own.is_empty() {
-                // What is said beside no piece is about the style.
+                // A text beside no piece is about the style.
                 found.style.add_all(&labels);
                 empty.push(block);
             }

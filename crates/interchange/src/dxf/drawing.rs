@@ -8,9 +8,9 @@ use toile_geometry::Vec2;
 pub(super) struct DxfDrawing {
     /// The blocks, in the order of the file.
     pub blocks: Vec<Block>,
-    /// What is drawn outside of blocks.
+    /// Entities outside of blocks.
     pub loose: Vec<Entity>,
-    /// Where blocks are put in.
+    /// Places at which blocks are put in.
     pub inserts: Vec<Insert>,
     /// Unit that the header states (`$INSUNITS`), as its number there; 0 for none.
     pub header_unit: i64,

@@ -29,6 +29,12 @@ pub(super) struct Nest {
     pub losses: Vec<Loss>,
 }
 
+/// A block, with its size if it is known.
+type InSize = (Option<String>, BlockPiece);
+
+/// A piece by its name, with its blocks.
+type Group = (String, Vec<InSize>);
+
 /// A block with the name of its piece and its size, as far as they are known.
 struct Named {
     name: Option<String>,
@@ -68,7 +74,7 @@ impl Nest {
         };
         let owned = |size: Option<&str>| size.map(str::to_owned);
         let mut sizes = distinct(&|piece| owned(piece.size()));
-        // Where all say the same, it is the sample size of the style.
+        // If all say the same, it is the sample size of the style.
         let of_sample = distinct(&|piece| owned(piece.sample_size()));
         let is_sample = sizes.is_empty() && of_sample.len() > 1;
         if is_sample {
@@ -80,7 +86,7 @@ impl Nest {
         // Of two sizes that a name ends in, the longer one is meant.
         sizes.sort_by_key(|size| std::cmp::Reverse(size.len()));
         let mut names: HashMap<String, String> = HashMap::new();
-        let blocks: Vec<(Option<String>, BlockPiece)> = pieces
+        let blocks: Vec<InSize> = pieces
             .into_iter()
             .map(|piece| {
                 let own = match is_sample {
@@ -145,11 +151,7 @@ impl Nest {
     }
 
     /// Index of the base size: the one that the file names, else the one whose blocks hold most.
-    fn base(
-        &mut self,
-        style: &Labels,
-        groups: &[(String, Vec<(Option<String>, BlockPiece)>)],
-    ) -> usize {
+    fn base(&mut self, style: &Labels, groups: &[Group]) -> usize {
         let sizes = &self.sizes;
         let alike = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
             (Ok(a), Ok(b)) => a == b,
@@ -184,11 +186,7 @@ impl Nest {
     }
 
     /// A piece in all sizes, the index of each its size; sizes that do not fit the base are left out.
-    fn in_sizes(
-        &mut self,
-        name: &str,
-        blocks: Vec<(Option<String>, BlockPiece)>,
-    ) -> BTreeMap<usize, BlockPiece> {
+    fn in_sizes(&mut self, name: &str, blocks: Vec<InSize>) -> BTreeMap<usize, BlockPiece> {
         let mut sized: BTreeMap<usize, BlockPiece> = BTreeMap::new();
         for (size, piece) in blocks {
             let k = size.and_then(|size| self.sizes.iter().position(|known| *known == size));
@@ -249,7 +247,7 @@ impl Nest {
 
 /// Blocks by the names of their pieces, in the order of the file. Where a name has two blocks of one size, they are told
 /// apart by the names of the blocks, else they are pieces of their own.
-fn grouped(blocks: Vec<Named>) -> Vec<(String, Vec<(Option<String>, BlockPiece)>)> {
+fn grouped(blocks: Vec<Named>) -> Vec<Group> {
     let mut groups: Vec<(String, Vec<Named>)> = Vec::new();
     let mut index: HashMap<String, usize> = HashMap::new();
     for block in blocks {
@@ -266,7 +264,7 @@ fn grouped(blocks: Vec<Named>) -> Vec<(String, Vec<(Option<String>, BlockPiece)>
     for (name, blocks) in groups {
         let sizes: HashSet<&Option<String>> = blocks.iter().map(|block| &block.size).collect();
         let is_single = sizes.len() == blocks.len();
-        let mut own: Vec<(String, Vec<(Option<String>, BlockPiece)>)> = Vec::new();
+        let mut own: Vec<Group> = Vec::new();
         // The next group for a block of a stem and a size.
         let mut taken: HashMap<(String, Option<String>), usize> = HashMap::new();
         let mut groups_of: HashMap<String, Vec<usize>> = HashMap::new();

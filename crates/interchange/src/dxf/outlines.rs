@@ -85,7 +85,7 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
             ..BlockPiece::default()
         };
         if k == 0 {
-            // What belongs to no outline is told with the first.
+            // Parts of no outline are told with the first.
             own.u_notches = piece.u_notches;
             own.depths = piece.depths;
             own.open_cuts = piece.open_cuts;

@@ -36,7 +36,7 @@ pub(super) struct PieceMaker {
     pub losses: Vec<Loss>,
 }
 
-/// Where the sew line of a piece stands.
+/// Place of the sew line of a piece in its block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum SewLine {
     /// On its layer: the number of the line there.
@@ -83,6 +83,7 @@ impl PieceMaker {
             name: name.to_owned(),
             fabric: own.labels.value(&["fabric", "material"]).map(str::to_owned),
             cut: quantity(own),
+            cut_outline: is_found.then(|| self.with_corners(cut, own)),
             cut_line: is_found.then_some(cut_points),
             notches: notches(own, &nested.sized, (self.count, self.unit)),
             grain: own
@@ -101,6 +102,14 @@ impl PieceMaker {
         self.lines_inside(&mut drawn, &piece, place);
         self.left_out(name, own);
         Some(drawn)
+    }
+
+    /// The cut line with its corners, without repeats.
+    fn with_corners(&self, mut cut: DrawnLine, own: &BlockPiece) -> DrawnLine {
+        let points = cut.in_size(self.base).to_vec();
+        cut.is_corner = corners(&cut, &points, own, (self.base, self.unit));
+        cut.drop_repeats(REPEAT);
+        cut
     }
 
     /// A line that was found, and tells what of it was not.
@@ -153,7 +162,7 @@ impl PieceMaker {
         drawn.holes.retain(|line| line.len() > 2);
     }
 
-    /// Where the sew line stands: on its layer, else evenly inside the cut line among internal lines, as Valentina
+    /// Place of the sew line: on its layer, else evenly inside the cut line among internal lines, as Valentina
     /// draws it, or among closed lines on the cut layer.
     fn sew_line(&self, own: &BlockPiece, cut: &[Vec2]) -> SewLine {
         let largest = |lines: &[BlockLine]| {

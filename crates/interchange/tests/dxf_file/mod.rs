@@ -232,3 +232,23 @@ pub fn off(p: [f64; 2], ring: &[[f64; 2]]) -> f64 {
     });
     chords.fold(f64::INFINITY, f64::min)
 }
+
+/// Longest time for a file (s); without optimisation four times as long.
+pub const MOST_SECONDS: f64 = if cfg!(debug_assertions) { 8.0 } else { 2.0 };
+
+/// Time that this thread has had of a processor (s), where the system tells it; other tests run beside it.
+pub fn processor_seconds() -> Option<f64> {
+    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = told.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
+/// The result of a task, and the time that it took of the processor (s); 0 where the system does not tell it.
+pub fn timed<T>(task: impl FnOnce() -> T) -> (T, f64) {
+    let start = processor_seconds();
+    let found = task();
+    let seconds = processor_seconds()
+        .zip(start)
+        .map(|(end, start)| end - start);
+    (found, seconds.unwrap_or(0.0))
+}
