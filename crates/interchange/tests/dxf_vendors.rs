@@ -642,6 +642,78 @@ fn a_sew_line_at_even_distances_gives_the_cut_line_again_with_its_corners() {
 }
 
 #[test]
+fn the_sew_line_of_a_half_may_be_open_at_the_fold() {
+    let cut = [[0.0, -10.0], [310.0, -10.0], [310.0, 510.0], [0.0, 510.0]];
+    let sew = [[0.0, 0.0], [300.0, 0.0], [300.0, 500.0], [0.0, 500.0]];
+    for closed in [true, false] {
+        let mut file = File::default();
+        file.style += &words("Units: METRIC");
+        let parts = [
+            line(1, &cut, true, &[]),
+            line(14, &sew, closed, &[]),
+            line(6, &[cut[0], cut[3]], false, &[]),
+        ];
+        file.block("BACK", &parts);
+        let truth = Truth {
+            piece: "BACK".to_owned(),
+            size: String::new(),
+            ring: cut.to_vec(),
+            notches: Vec::new(),
+            fold: Some(0.0),
+        };
+        let reading = default_held(&file.text(), &[truth]);
+        let panel = &reading.pattern.panels[0];
+        assert_eq!((panel.lines.len(), panel.operations.len()), (1, 1));
+        let own: Vec<f64> = panel.lines[0]
+            .edges
+            .iter()
+            .map(|edge| {
+                edge.allowance
+                    .as_ref()
+                    .and_then(toile_pattern::Number::value)
+            })
+            .map(|own| own.unwrap_or(0.01))
+            .collect();
+        assert_eq!(panel.allowance, toile_pattern::Number::Value(0.01));
+        assert_eq!(own, [0.01, 0.01, 0.01, 0.0]);
+        assert_eq!(reading.losses, []);
+    }
+}
+
+#[test]
+fn turn_points_in_one_place_of_the_sample_are_two_corners() {
+    // A dart mouth at the hem that is closed in the sample size.
+    let ring = |mouth: f64| {
+        [
+            [0.0, 0.0],
+            [150.0, 0.0],
+            [150.0 + mouth, 0.0],
+            [300.0, 0.0],
+            [300.0, 400.0],
+            [0.0, 400.0],
+        ]
+    };
+    let mut file = File::default();
+    file.style += &words("Units: METRIC");
+    file.style += &words("Sample Size: 8");
+    for (size, mouth) in [("8", 0.0), ("10", 12.0)] {
+        let mut parts = vec![
+            line(1, &ring(mouth), true, &[]),
+            words("Piece Name: SKIRT"),
+            words(&format!("Size: {size}")),
+        ];
+        if size == "8" {
+            parts.extend(ring(mouth).map(|p| point(2, p, &[])));
+        }
+        file.block(&format!("SKIRT_{size}"), &parts);
+    }
+    let pattern = read(file.text().as_bytes(), &ReadOptions::default(), &[])
+        .unwrap()
+        .pattern;
+    assert_eq!(pattern.panels[0].lines[0].edges.len(), 6);
+}
+
+#[test]
 fn a_closed_line_inside_a_narrow_piece_is_no_sew_line() {
     let band = [[0.0, 0.0], [700.0, 0.0], [700.0, 60.0], [0.0, 60.0]];
     let button = [[20.0, 20.0], [40.0, 20.0], [40.0, 40.0], [20.0, 40.0]];

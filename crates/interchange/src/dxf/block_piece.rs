@@ -347,12 +347,13 @@ impl BlockPiece {
     }
 
     /// The size, as its label says.
-    pub fn size(&self) -> Option<&str> {
-        self.labels.value(&["size", "sizename"])
+    pub fn size(&self) -> Option<String> {
+        let size = self.labels.value(&["size", "sizename"]);
+        size.map(str::to_owned)
     }
 
     /// The size that some programs label as the sample size.
-    pub fn sample_size(&self) -> Option<&str> {
-        self.labels.value(&["samplesize"])
+    pub fn sample_size(&self) -> Option<String> {
+        self.labels.value(&["samplesize"]).map(str::to_owned)
     }
 }

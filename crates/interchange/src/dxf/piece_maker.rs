@@ -1,9 +1,9 @@
 //! Makes a drawn piece, in metres, of the blocks of its sizes.
 
 use super::block_piece::{BlockLine, BlockPiece};
-use super::nest::NestedPiece;
 use super::piece_lines::{FoundLine, SizedPiece};
 use super::piece_marks::{corners, drills, notches, with_marks};
+use super::sized_pieces::NestedPiece;
 use crate::Loss;
 use crate::drawn::allowance::{distance, is_evenly_inside};
 use crate::drawn::inset::inset;

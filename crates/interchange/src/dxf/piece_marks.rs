@@ -14,6 +14,8 @@ use toile_pattern::NotchKind;
 const ON_VERTEX: f64 = 5e-4;
 /// Largest distance of a corner of the sew line from the corner of the cut line that belongs to it (m).
 const MAX_CORNER: f64 = 0.075;
+/// Vertices that lie nearer to each other are in one place (m).
+const ONE_VERTEX: f64 = 1e-6;
 /// Share of the length of an outline within which two places are one (1).
 const ONE_PLACE: f64 = 1e-4;
 
@@ -118,15 +120,21 @@ pub(super) fn corners(
     let key = |p: &Vec2| [p.x, p.y].map(|x| (x * 1e6).round() as i64);
     points.sort_by_key(key);
     points.dedup_by_key(|p| key(p));
+    // Vertices that lie in one place in this size are corners together: in others they lie apart.
+    let mut mark = |k: usize| {
+        let is_here = |p: &Vec2| (p - vertices[k]).norm() <= ONE_VERTEX;
+        let here = vertices.iter().enumerate().filter(|(_, p)| is_here(p));
+        here.for_each(|(j, _)| is_corner[j] = true);
+    };
     for at in points {
         if let Some(k) = vertex_at(vertices, at, ON_VERTEX) {
-            is_corner[k] = true;
+            mark(k);
         } else if let Some(k) = vertex_at(cut, at, ON_VERTEX) {
             is_beside = true;
             let same = (cut.len() == vertices.len()).then_some(k);
             let same = same.filter(|&k| (vertices[k] - at).norm() <= MAX_CORNER);
             if let Some(k) = same.or_else(|| vertex_at(vertices, at, MAX_CORNER)) {
-                is_corner[k] = true;
+                mark(k);
             }
         }
     }

@@ -72,10 +72,9 @@ impl Nest {
             let all = pieces.iter().filter_map(of);
             all.filter(|size| known.insert(size.clone())).collect()
         };
-        let owned = |size: Option<&str>| size.map(str::to_owned);
-        let mut sizes = distinct(&|piece| owned(piece.size()));
+        let mut sizes = distinct(&BlockPiece::size);
         // If all say the same, it is the sample size of the style.
-        let of_sample = distinct(&|piece| owned(piece.sample_size()));
+        let of_sample = distinct(&BlockPiece::sample_size);
         let is_sample = sizes.is_empty() && of_sample.len() > 1;
         if is_sample {
             sizes = of_sample;
@@ -90,8 +89,8 @@ impl Nest {
             .into_iter()
             .map(|piece| {
                 let own = match is_sample {
-                    true => owned(piece.sample_size()),
-                    false => owned(piece.size()),
+                    true => piece.sample_size(),
+                    false => piece.size(),
                 };
                 let end = || {
                     sizes
