@@ -19,6 +19,8 @@ pub enum FileKind {
     Glb,
     /// DXF, text or binary.
     Dxf,
+    /// DWG, the format of AutoCAD's drawings.
+    Dwg,
     /// A drawing in SVG.
     Svg,
     /// A marker of this program drawn in SVG.
@@ -83,6 +85,7 @@ impl FileKind {
             Self::Archive => "a compressed archive",
             Self::Glb => "a glTF binary",
             Self::Dxf => "a DXF drawing",
+            Self::Dwg => "a DWG drawing",
             Self::Svg => "an SVG drawing",
             Self::DrawnMarker => "a marker that `toile nest` drew",
             Self::Print => "a print of pieces that `toile print` drew",

@@ -58,6 +58,7 @@ impl FileKind {
             | Self::PostScript
             | Self::Archive
             | Self::Glb
+            | Self::Dwg
             | Self::DrawnMarker
             | Self::Print
             | Self::Html
@@ -78,6 +79,7 @@ impl FileKind {
             Self::DrawnMarker | Self::Print => {
                 Some("give the pattern that it was made of, which holds more than its drawing")
             }
+            Self::Dwg => Some("save it as DXF in text (ASCII) in the program that it comes from"),
             Self::Picture
             | Self::Pdf
             | Self::PostScript
@@ -223,6 +225,12 @@ fn of_magic(bytes: &[u8]) -> Option<FileKind> {
         (b"\x1b%", FileKind::Hpgl),
         (b"\x1bE", FileKind::Hpgl),
     ];
+    // A drawing of AutoCAD begins with its release, as in AC1032, and a byte that is no text.
+    let is_release =
+        |bytes: &[u8]| bytes.starts_with(b"AC") && bytes[2..].iter().all(u8::is_ascii_digit);
+    if bytes.get(..6).is_some_and(is_release) && bytes.get(6).is_some_and(|&byte| byte < b'\t') {
+        return Some(FileKind::Dwg);
+    }
     if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
         return Some(FileKind::Picture);
     }
@@ -348,7 +356,7 @@ mod tests {
 
     #[test]
     fn files_are_known_by_their_content() {
-        let cases: [(&[u8], FileKind); 27] = [
+        let cases: [(&[u8], FileKind); 28] = [
             (b"  \n", FileKind::Empty),
             (b"\xff\xfe<\0s\0", FileKind::Utf16),
             (b"\x89PNG\r\n\x1a\n", FileKind::Picture),
@@ -357,6 +365,7 @@ mod tests {
             (b"%PDF-1.7\n", FileKind::Pdf),
             (b"PK\x03\x04\x14\0", FileKind::Archive),
             (b"glTF\x02\0\0\0", FileKind::Glb),
+            (b"AC1032\0\0\0\0\0", FileKind::Dwg),
             (b"  0\r\nSECTION\r\n  2\r\n", FileKind::Dxf),
             (b"999\nmade by hand\n0\nSECTION\n", FileKind::Dxf),
             (

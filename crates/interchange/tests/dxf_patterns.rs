@@ -1,131 +1,18 @@
 //! Patterns in DXF, one small file for each trap that real files hold.
 #![allow(clippy::unwrap_used)]
 
+mod dxf_file;
+
+use dxf_file::{File, draft_of, line, point, tag, words};
 use std::f64::consts::FRAC_PI_2;
-use std::fmt::Write as _;
-use toile_interchange::{Format, ReadOptions, Reading, read};
-use toile_measure::Measurements;
-use toile_pattern::{
-    Cut, Draft, Evaluation, LineKind, NotchKind, Number, OperationKind, Pattern, Wearer,
-};
-
-/// A DXF file in parts.
-#[derive(Default)]
-struct File {
-    blocks: String,
-    inserts: String,
-    style: String,
-}
-
-fn tag(text: &mut String, code: i32, value: impl std::fmt::Display) {
-    let _ = write!(text, "{code}\r\n{value}\r\n");
-}
-
-/// A line through points; `further` are tags of the polyline.
-fn line(layer: u32, points: &[[f64; 2]], closed: bool, further: &[(i32, &str)]) -> String {
-    let mut text = String::new();
-    tag(&mut text, 0, "POLYLINE");
-    tag(&mut text, 8, layer);
-    tag(&mut text, 66, 1);
-    tag(&mut text, 70, i32::from(closed));
-    further
-        .iter()
-        .for_each(|(code, value)| tag(&mut text, *code, value));
-    for [x, y] in points {
-        tag(&mut text, 0, "VERTEX");
-        tag(&mut text, 8, layer);
-        tag(&mut text, 10, x);
-        tag(&mut text, 20, y);
-    }
-    tag(&mut text, 0, "SEQEND");
-    text
-}
-
-fn point(layer: u32, [x, y]: [f64; 2], further: &[(i32, &str)]) -> String {
-    let mut text = String::new();
-    tag(&mut text, 0, "POINT");
-    tag(&mut text, 8, layer);
-    tag(&mut text, 10, x);
-    tag(&mut text, 20, y);
-    further
-        .iter()
-        .for_each(|(code, value)| tag(&mut text, *code, value));
-    text
-}
-
-fn words(text: &str) -> String {
-    let mut out = String::new();
-    tag(&mut out, 0, "TEXT");
-    tag(&mut out, 8, 1);
-    tag(&mut out, 10, 0);
-    tag(&mut out, 20, 0);
-    tag(&mut out, 1, text);
-    out
-}
-
-impl File {
-    fn block(&mut self, name: &str, parts: &[String]) {
-        tag(&mut self.blocks, 0, "BLOCK");
-        tag(&mut self.blocks, 8, 1);
-        tag(&mut self.blocks, 2, name);
-        tag(&mut self.blocks, 70, 64);
-        tag(&mut self.blocks, 10, 0);
-        tag(&mut self.blocks, 20, 0);
-        self.blocks.extend(parts.iter().map(String::as_str));
-        tag(&mut self.blocks, 0, "ENDBLK");
-        self.insert(name, &[]);
-    }
-
-    fn insert(&mut self, name: &str, further: &[(i32, &str)]) {
-        tag(&mut self.inserts, 0, "INSERT");
-        tag(&mut self.inserts, 8, 1);
-        tag(&mut self.inserts, 2, name);
-        further
-            .iter()
-            .for_each(|(code, value)| tag(&mut self.inserts, *code, value));
-    }
-
-    fn text(&self) -> String {
-        let mut text = String::new();
-        for (name, content) in [
-            ("BLOCKS", &self.blocks),
-            ("ENTITIES", &(self.style.clone() + &self.inserts)),
-        ] {
-            tag(&mut text, 0, "SECTION");
-            tag(&mut text, 2, name);
-            text += content;
-            tag(&mut text, 0, "ENDSEC");
-        }
-        tag(&mut text, 0, "EOF");
-        text
-    }
-
-    fn read(&self) -> Reading {
-        read(self.text().as_bytes(), &ReadOptions::default(), &[]).unwrap()
-    }
-}
+use toile_interchange::{Format, ReadOptions, read};
+use toile_pattern::{Cut, Draft, LineKind, NotchKind, Number, OperationKind};
 
 /// A skirt panel of 400 x 600 mm, its hem below.
 const SKIRT: [[f64; 2]; 4] = [[0.0, 0.0], [400.0, 0.0], [400.0, 600.0], [0.0, 600.0]];
 
 fn metric(file: &mut File) {
     file.style += &words("Units: METRIC");
-}
-
-fn draft_of(pattern: &Pattern, size: Option<&str>) -> Draft {
-    let size = size.map(|name| pattern.size_named(name).unwrap().id);
-    let wearer = Wearer {
-        measurements: Measurements::adult(),
-        size,
-    };
-    let (draft, found) = Evaluation::new(pattern, wearer).draft();
-    let faults: Vec<String> = found
-        .iter()
-        .filter(|d| d.severity == toile_pattern::Severity::Error)
-        .map(ToString::to_string)
-        .collect();
-    assert_eq!(faults, [""; 0]);
-    draft
 }
 
 /// Corners of the first piece of a draft (m).
@@ -505,7 +392,13 @@ fn twins_of_lines_make_it_astm_and_drills_and_texts_are_told() {
         .iter()
         .map(|l| (l.what.as_str(), l.count))
         .collect();
-    assert_eq!(told, [("drill holes", 1), ("texts", 1)]);
+    assert_eq!(told, [("texts", 1)]);
+    let lines = &reading.pattern.panels[0].lines;
+    let drill = lines.last().unwrap();
+    assert_eq!(
+        (drill.name.as_str(), drill.kind),
+        ("drill 1", LineKind::Internal)
+    );
 }
 
 #[test]
@@ -561,4 +454,62 @@ fn outlines_without_blocks_are_pieces_and_a_drawing_without_any_is_refused() {
     )
     .unwrap_err();
     assert!(empty.what.contains("no closed line"), "{empty}");
+}
+
+#[test]
+fn files_that_hold_no_pattern_in_text_are_refused_by_name_with_a_remedy() {
+    let mut marker = File::default();
+    for (code, value) in [
+        (0, "POLYLINE"),
+        (8, "CUT"),
+        (70, "1"),
+        (0, "SEQEND"),
+        (0, "TEXT"),
+        (8, "TEXT"),
+        (1, "Shirt, poplin"),
+    ] {
+        tag(&mut marker.style, code, value);
+    }
+    let marker = marker.text();
+    let cases: [(&[u8], &str, &str); 4] = [
+        (b"AutoCAD Binary DXF\r\n\x1a\0", "binary", "DXF in text"),
+        (b"AC1032\0\0\0\0", "a DWG drawing", "save it as DXF"),
+        (
+            marker.as_bytes(),
+            "a marker that `toile nest` wrote (Shirt, poplin)",
+            "NAME.toile.json",
+        ),
+        (b"%PDF-1.7\n", "a PDF", "patterns are read from"),
+    ];
+    for (bytes, what, remedy) in cases {
+        let error = read(bytes, &ReadOptions::default(), &[]).unwrap_err();
+        assert!(
+            error.what.contains(what) && error.hint.contains(remedy),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn cut_outs_that_cannot_be_cut_out_and_lines_without_area_are_told() {
+    let mut file = File::default();
+    metric(&mut file);
+    let across = [[350.0, 50.0], [450.0, 50.0], [450.0, 90.0]];
+    let flat = [[10.0, 10.0], [20.0, 10.0], [30.0, 10.0]];
+    let parts = [
+        line(1, &SKIRT, true, &[]),
+        line(11, &across, true, &[]),
+        line(11, &[[20.0, 500.0], [60.0, 500.0]], false, &[]),
+        line(1, &flat, true, &[]),
+    ];
+    file.block("BACK", &parts);
+    file.block("EMPTY", &[words("NOTE")]);
+    let reading = file.read();
+    let told = reading.losses.iter().map(|loss| loss.what.as_str());
+    assert_eq!(
+        told.collect::<Vec<_>>(),
+        ["blocks", "cut-outs", "closed cut lines", "a cut-out"]
+    );
+    let kinds = reading.pattern.panels[0].lines.iter().map(|line| line.kind);
+    assert!(kinds.eq([LineKind::Outline, LineKind::Internal, LineKind::Internal]));
 }

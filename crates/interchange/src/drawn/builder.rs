@@ -4,15 +4,18 @@
 //! one edge, straight or a spline through them. Edges of the sew line get the allowance that their distance to
 //! the cut line shows.
 
-use super::allowance::{Width, nearest, width};
-use super::corners::{corners, is_straight};
-use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece, Way};
-use super::spline;
+use super::corners::{corners, is_straight, lies_along};
+use super::cubics::{Cubics, cubics};
+use super::cut_fit::{CutFit, cut_fit, edges_of, ring_of};
+use super::drill::{DRILL_LENGTH, DRILL_NAME};
+use super::holes::sound_holes;
+use super::marks::{Marked, OutlinePlace};
+use super::piece::{DrawnLine, DrawnPattern, DrawnPiece, Span};
 use crate::Loss;
 use crate::part_names::part_name;
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use toile_geometry::{Bounds2, Vec2};
+use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_pattern::{
     CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number, Operation,
     OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
@@ -22,13 +25,8 @@ use toile_pattern::{
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
 pub(crate) const ON_VERTEX: f64 = 2e-4;
-/// Largest distance of a notch from the line of an edge that it belongs to beyond the corner (m).
-const ON_LINE: f64 = 2e-4;
-/// Distances from a notch that differ by less count as one (m): at an allowance of 10 mm this is 1 mm along the
-/// line, nearer than notches are set to a corner.
-const AS_NEAR: f64 = 5e-5;
-/// Longest way from the sew line, or from a corner of it, to a notch on the cut line that belongs to it (m).
-const MAX_REACH: f64 = 0.06;
+/// Share of the vertices of a cut line that may lie elsewhere than allowances put them (1).
+const MAX_OFF_SHARE: f64 = 0.5;
 /// Room between pieces that are laid side by side on the table (m).
 const ROOM: f64 = 0.03;
 /// Width of a row of pieces on the table (m).
@@ -95,9 +93,17 @@ struct Numbers {
     edges: usize,
 }
 
+/// Corners of a line, and the cubics of each edge that is no straight line.
+struct Curved {
+    corners: Vec<usize>,
+    curves: Vec<Option<Cubics>>,
+}
+
 /// A line of a panel as built: its edges, and for each vertex of the drawn line the point made of it.
 struct Built {
     edges: Vec<Edge>,
+    /// The cubics of each edge that is no straight line.
+    curves: Vec<Option<Cubics>>,
     points: Vec<PointId>,
     /// Indices of the corners among the vertices.
     corners: Vec<usize>,
@@ -137,44 +143,78 @@ impl Builder {
         let mut ids = self.pattern.ids;
         let mut drawing = PanelBuilder::new(&mut ids, &name, fabric);
         let mut numbers = Numbers::default();
-        let fold = piece
-            .fold
-            .and_then(|ends| self.fold_vertices(&outline, ends));
-        if piece.fold.is_some() && fold.is_none() {
-            self.losses.push(Loss::at(
-                &name,
-                "the fold line",
-                "it is no straight stretch of the outline",
-            ));
+        let mut fold = self.fold(&name, piece, &mut outline);
+        let mut curved = self.smooth(&name, &mut outline, fold);
+        let mut inside = piece.inside.clone();
+        let mut fit = self.cut_fit(piece, &outline, &curved);
+        if let (Some(cut), true) = (
+            &piece.cut_outline,
+            fit.as_ref().is_some_and(is_no_allowance),
+        ) {
+            let why = "the cut line is at no even distance from it: the cut line is the outline, the sew line a line inside";
+            self.lost(&name, "a sew line", why);
+            inside.push(piece.outline.clone());
+            outline = cut.clone();
+            if outline.area(self.base) < 0.0 {
+                outline.reverse();
+            }
+            fold = self.fold(&name, piece, &mut outline);
+            curved = self.smooth(&name, &mut outline, fold);
+            fit = None;
         }
-        let further = fold.map_or(Vec::new(), |ends| ends.to_vec());
-        let mut built = self.line(&mut drawing, &mut numbers, &outline, &further);
-        if let Some(cut_line) = &piece.cut_line {
-            self.allowances(&name, &outline, &mut built, cut_line, &mut drawing);
+        let edges = edges_of(&outline, (&curved.corners, &curved.curves), self.base);
+        let (holes, others) = sound_holes(ring_of(&edges), &piece.holes, self.base);
+        for hole in others {
+            let why = "it crosses the outline or another cut-out; kept as a line inside";
+            self.lost(&name, "a cut-out", why);
+            inside.push(hole);
+        }
+        let mut built = self.line(&mut drawing, &mut numbers, &outline, curved);
+        if let Some(fit) = fit {
+            self.allowances(&name, fit, &mut built.edges, &mut drawing);
         }
         let Built {
             edges,
+            curves,
             points,
             corners,
         } = built;
         let line = drawing.line("outline", LineKind::Outline, edges);
-        for (k, hole) in piece.holes.iter().enumerate() {
-            let mut hole = hole.clone();
+        for (k, mut hole) in holes.into_iter().enumerate() {
             if hole.area(self.base) > 0.0 {
                 hole.reverse();
             }
-            let built = self.line(&mut drawing, &mut numbers, &hole, &[]);
+            let built = self.line(&mut drawing, &mut numbers, &hole, self.curved(&hole, None));
             drawing.line(format!("hole {}", k + 1), LineKind::Hole, built.edges);
         }
-        for (k, inside) in piece.inside.iter().enumerate() {
-            let built = self.line(&mut drawing, &mut numbers, inside, &[]);
+        for (k, inside) in inside.iter().enumerate() {
+            let built = self.line(
+                &mut drawing,
+                &mut numbers,
+                inside,
+                self.curved(inside, None),
+            );
             drawing.line(format!("line {}", k + 1), LineKind::Internal, built.edges);
         }
+        self.drills(&mut drawing, &mut numbers, &piece.drills);
+        let marked = Marked {
+            outline: &outline,
+            corners: &corners,
+            curves: &curves,
+            base: self.base,
+            sizes: self.sizes.len().max(1),
+        };
         for (k, notch) in piece.notches.iter().enumerate() {
-            let Some(at) = self.mark(&outline, &points, &corners, notch) else {
-                self.losses
-                    .push(Loss::at(&name, "a notch", "it lies far from the outline"));
-                continue;
+            let at = match marked.place(notch) {
+                None => {
+                    self.lost(&name, "a notch", "it lies far from the outline");
+                    continue;
+                }
+                Some(OutlinePlace::Corner(corner)) => Mark::corner(points[corner]),
+                Some(OutlinePlace::Between { corners, shares }) => {
+                    let share = self.number(|size| shares[size]);
+                    Mark::between(corners.map(|k| points[k]), share)
+                }
             };
             // A notch at a corner is cut on both cut lines that meet there.
             let mut known = drawing.panel.notches.iter();
@@ -237,15 +277,63 @@ impl Builder {
         }
     }
 
-    /// Adds the points and curves of a line; `further` are vertices that must be corners.
+    /// Tells something that was left out of a piece.
+    fn lost(&mut self, piece: &str, what: &str, why: &str) {
+        let alike = |loss: &&mut Loss| loss.place == piece && loss.what == what && loss.why == why;
+        match self.losses.iter_mut().find(alike) {
+            Some(loss) => loss.count += 1,
+            None => self.losses.push(Loss::at(piece, what, why)),
+        }
+    }
+
+    /// Corners and curves of a line; `fold` are the vertices at the ends of a straight edge of it.
+    fn curved(&self, line: &DrawnLine, fold: Option<[usize; 2]>) -> Curved {
+        let corners = corners(line, fold.as_ref().map_or(&[], |ends| ends));
+        let count = line.len();
+        let edges = corners.len() - usize::from(!line.is_closed);
+        let curve = |c: usize| {
+            let [from, next] = [corners[c], corners[(c + 1) % corners.len()]];
+            let to = if next > from { next } else { next + count };
+            let is_fold = fold == Some([from, next]);
+            (!is_fold).then(|| self.curve(line, (from, to))).flatten()
+        };
+        let curves = (0..edges).map(curve).collect();
+        Curved { corners, curves }
+    }
+
+    /// Corners and curves of an outline. Where smooth curves would cross each other in some size, and its chords do not,
+    /// all its vertices become corners.
+    fn smooth(&mut self, name: &str, outline: &mut DrawnLine, fold: Option<[usize; 2]>) -> Curved {
+        let curved = self.curved(outline, fold);
+        let is_sound = |size: usize| {
+            let edges = edges_of(outline, (&curved.corners, &curved.curves), size);
+            let vertices = outline.in_size(size);
+            let points = ring_of(&edges);
+            // Straight lines cross where their vertices do.
+            points.len() == edges.len()
+                || Polygon::new(points).defects().is_empty()
+                || !Polygon::new(vertices.to_vec()).defects().is_empty()
+        };
+        if (0..outline.by_size.len()).all(is_sound) {
+            return curved;
+        }
+        let why =
+            "its curves would cross each other, so straight chords are kept between all vertices";
+        self.lost(name, "smoothness of an outline", why);
+        outline.is_corner = vec![true; outline.len()];
+        outline.between.clear();
+        outline.spans.clear();
+        self.curved(outline, fold)
+    }
+
+    /// Adds the points and curves of a line.
     fn line(
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
         line: &DrawnLine,
-        further: &[usize],
+        Curved { corners, curves }: Curved,
     ) -> Built {
-        let corners = corners(line, further);
         let count = line.len();
         let at = |k: usize, size: usize| line.in_size(size)[k % count];
         let points: Vec<PointId> = (0..count)
@@ -257,81 +345,91 @@ impl Builder {
                 )
             })
             .collect();
-        let last = corners.len() - usize::from(!line.is_closed);
-        let mut edges = Vec::new();
-        for (c, &from) in corners.iter().enumerate().take(last) {
+        let mut edges = Vec::with_capacity(curves.len());
+        for (c, curve) in curves.iter().enumerate() {
+            let from = corners[c];
             let next = corners[(c + 1) % corners.len()];
-            let to = if next > from { next } else { next + count };
             numbers.edges += 1;
             let name = format!("e{}", numbers.edges);
-            let ends = [points[from], points[to % count]];
-            let ways: Vec<Way> = (from..to).map(|k| line.way(k % count)).collect();
-            let rule = self.curve(drawing, numbers, (from, &ways), &points, &at);
+            let ends = [points[from], points[next]];
+            let rule = match curve {
+                None => CurveRule::Line,
+                Some(cubics) => {
+                    self.spline(drawing, numbers, cubics, |k| points[(from + k) % count])
+                }
+            };
             edges.push(drawing.edge(name, ends, rule));
         }
         Built {
             edges,
+            curves,
             points,
             corners,
         }
     }
 
-    /// The curve from one corner to the next, along the ways from vertex to vertex.
-    fn curve(
+    /// The cubics through the vertices from one corner to the next; `None` if they lie on a straight line.
+    fn curve(&self, line: &DrawnLine, (from, to): (usize, usize)) -> Option<Cubics> {
+        let sizes = self.sizes.len().max(1);
+        let is_cubic = |k: usize| matches!(line.span(k % line.len()), Span::Cubic(_));
+        let is_line = !(from..to).any(is_cubic)
+            && (0..sizes).all(|size| {
+                let vertices = line.in_size(size);
+                let mut stretch: Vec<Vec2> = Vec::with_capacity(to - from + 1);
+                for k in from..to {
+                    let k = k % vertices.len();
+                    stretch.push(vertices[k]);
+                    stretch.extend(line.between_in(size, k));
+                }
+                stretch.push(vertices[to % vertices.len()]);
+                is_straight(&stretch)
+            });
+        (!is_line).then(|| cubics(line, (from, to), sizes))
+    }
+
+    /// The rule of a curve of cubics; `vertex` gives the points of its vertices by their numbers from its start.
+    fn spline(
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
-        (from, ways): (usize, &[Way]),
-        points: &[PointId],
-        at: &impl Fn(usize, usize) -> Vec2,
+        cubics: &Cubics,
+        vertex: impl Fn(usize) -> PointId,
     ) -> CurveRule {
-        let to = from + ways.len();
-        let sizes = self.sizes.len().max(1);
-        let given: Option<Vec<[Vec2; 2]>> = ways
-            .iter()
-            .map(|way| match way {
-                Way::Cubic(handles) => Some(*handles),
-                Way::Chord | Way::Straight => None,
-            })
-            .collect();
-        let stretch = |size: usize| -> Vec<Vec2> { (from..=to).map(|k| at(k, size)).collect() };
-        if given.is_none() && (0..sizes).all(|size| is_straight(&stretch(size))) {
-            return CurveRule::Line;
+        if cubics.has_chords {
+            let why =
+                "a smooth curve would turn back, so straight chords are kept between its vertices";
+            self.lost(&drawing.panel.name.clone(), "smoothness of a curve", why);
         }
-        let mut all = Vec::with_capacity(sizes);
-        for size in 0..sizes {
-            if let Some(handles) = &given {
-                all.push(handles.clone());
-                continue;
-            }
-            let (handles, overshoots) = spline::handles(&stretch(size));
-            if overshoots && size == self.base {
-                self.losses.push(Loss::at(
-                    &drawing.panel.name,
-                    "smoothness of a curve",
-                    "its vertices turn back, so straight chords are kept between them",
-                ));
-            }
-            all.push(handles);
-        }
-        let mut handle = |segment: usize, end: usize| {
+        let mut handle = |k: usize, end: usize| {
             numbers.handles += 1;
-            let rule = self.rule(|size| all[size.min(sizes - 1)][segment][end]);
+            let rule = self
+                .rule(|size| cubics.by_size[size.min(cubics.by_size.len() - 1)][k].handles[end]);
             drawing.point(format!("h{}", numbers.handles), rule)
         };
-        let segments = to - from;
+        let count = cubics.ends_at_vertex.len();
         let start = handle(0, 0);
-        let mut knots = Vec::new();
-        for k in 1..segments {
-            let before = handle(k - 1, 1);
-            let after = handle(k, 0);
+        // Handles before and after each joint of two cubics.
+        let joints: Vec<[PointId; 2]> = (1..count)
+            .map(|k| [handle(k - 1, 1), handle(k, 0)])
+            .collect();
+        let end = handle(count - 1, 1);
+        let mut vertices = 0;
+        let mut knots = Vec::with_capacity(joints.len());
+        for (k, [before, after]) in joints.into_iter().enumerate() {
+            let point = if cubics.ends_at_vertex[k] {
+                vertices += 1;
+                vertex(vertices)
+            } else {
+                numbers.points += 1;
+                let at = |size: usize| cubics.by_size[size.min(cubics.by_size.len() - 1)][k].end;
+                drawing.point(format!("p{}", numbers.points), self.rule(at))
+            };
             knots.push(Knot {
                 before,
-                point: points[(from + k) % points.len()],
+                point,
                 after,
             });
         }
-        let end = handle(segments - 1, 1);
         CurveRule::Spline {
             handles: [start, end],
             knots,
@@ -339,50 +437,86 @@ impl Builder {
         }
     }
 
-    /// Sets the allowances of the edges of an outline.
+    /// Adds a short line inside for each drill hole.
+    fn drills(
+        &mut self,
+        drawing: &mut PanelBuilder<'_>,
+        numbers: &mut Numbers,
+        drills: &[Vec<Vec2>],
+    ) {
+        for (k, by_size) in drills.iter().enumerate() {
+            let arm = Vec2::new(0.5 * DRILL_LENGTH, 0.0);
+            let mark = DrawnLine {
+                by_size: by_size.iter().map(|at| vec![at - arm, at + arm]).collect(),
+                ..DrawnLine::default()
+            };
+            let built = self.line(drawing, numbers, &mark, self.curved(&mark, None));
+            drawing.line(
+                format!("{DRILL_NAME} {}", k + 1),
+                LineKind::Internal,
+                built.edges,
+            );
+        }
+    }
+
+    /// The vertices at the ends of the fold of a piece; those between are left out of the outline.
+    fn fold(
+        &mut self,
+        name: &str,
+        piece: &DrawnPiece,
+        outline: &mut DrawnLine,
+    ) -> Option<[usize; 2]> {
+        let ends = self.fold_vertices(outline, piece.fold?);
+        if ends.is_none() {
+            let why = "it is no straight stretch of the outline";
+            self.lost(name, "the fold line", why);
+        }
+        ends.map(|ends| without_vertices_between(outline, ends))
+    }
+
+    /// Allowances and corners by which the cut line of a piece follows from its outline.
+    fn cut_fit(&self, piece: &DrawnPiece, outline: &DrawnLine, curved: &Curved) -> Option<CutFit> {
+        let drawn = piece.cut_line.as_ref()?;
+        let edges = edges_of(outline, (&curved.corners, &curved.curves), self.base);
+        // The cut line curves between its vertices, as the sew line does.
+        let dense = piece.cut_outline.as_ref().map(|cut| {
+            let curved = self.curved(cut, None);
+            ring_of(&edges_of(cut, (&curved.corners, &curved.curves), self.base))
+        });
+        Some(cut_fit(&edges, (drawn, dense.as_deref().unwrap_or(drawn))))
+    }
+
+    /// Sets the allowances and corners of the edges of an outline.
     fn allowances(
         &mut self,
         name: &str,
-        outline: &DrawnLine,
-        built: &mut Built,
-        cut_line: &[Vec2],
+        fit: CutFit,
+        edges: &mut [Edge],
         drawing: &mut PanelBuilder<'_>,
     ) {
-        let chords = outline.chords(self.base);
-        let vertices = &chords.points;
-        let count = vertices.len();
-        let corners: Vec<usize> = built.corners.iter().map(|&k| chords.starts[k]).collect();
-        let mut uneven = 0;
-        let widths: Vec<f64> = corners
-            .iter()
-            .enumerate()
-            .map(|(c, &from)| {
-                let next = corners[(c + 1) % corners.len()];
-                let to = if next > from { next } else { next + count };
-                let edge: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
-                match width(&edge, cut_line) {
-                    Width::Even(width) => rounded(width),
-                    Width::Uneven(mean) => {
-                        uneven += 1;
-                        rounded(mean)
-                    }
-                }
-            })
-            .collect();
-        if uneven > 0 {
+        let all = [
+            (
+                fit.uneven,
+                "seam allowances of uneven width",
+                "their mean width is taken, or the usual one of the piece where that is beyond all measure",
+            ),
+            (
+                fit.other_corners,
+                "corners of the cut line",
+                "they turn in a way that no corner here does",
+            ),
+        ];
+        for (count, what, why) in all.into_iter().filter(|(count, ..)| *count > 0) {
             self.losses.push(Loss {
-                count: uneven,
-                ..Loss::at(
-                    name,
-                    "seam allowances of uneven width",
-                    "their mean width is taken",
-                )
+                count,
+                ..Loss::at(name, what, why)
             });
         }
-        let usual = most_common(&widths);
+        let usual = fit.usual;
         drawing.panel.allowance = usual.into();
-        for (edge, width) in built.edges.iter_mut().zip(widths) {
+        for ((edge, width), corner) in edges.iter_mut().zip(fit.widths).zip(fit.corners) {
             edge.allowance = (width != usual).then(|| width.into());
+            edge.corner = corner;
         }
     }
 
@@ -403,9 +537,9 @@ impl Builder {
         let count = vertices.len();
         let runs_straight = |from: usize, to: usize| {
             let to = if to > from { to } else { to + count };
-            let is_curve = |k: usize| matches!(outline.way(k % count), Way::Cubic(_));
+            let is_cubic = |k: usize| matches!(outline.span(k % count), Span::Cubic(_));
             let stretch: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
-            !(from..to).any(is_curve) && is_straight(&stretch)
+            !(from..to).any(is_cubic) && lies_along(&stretch, ON_VERTEX)
         };
         match a != b {
             true if runs_straight(a, b) => Some([a, b]),
@@ -413,104 +547,23 @@ impl Builder {
             _ => None,
         }
     }
-
-    /// The mark of a place on an outline.
-    fn mark(
-        &self,
-        outline: &DrawnLine,
-        points: &[PointId],
-        corners: &[usize],
-        notch: &DrawnNotch,
-    ) -> Option<Mark> {
-        let chords = outline.chords(self.base);
-        let vertices = &chords.points;
-        let place = notch.at;
-        let on_chords: Vec<usize> = corners.iter().map(|&k| chords.starts[k]).collect();
-        if let Some(c) = corner_of(place, vertices, &on_chords) {
-            return Some(Mark::corner(points[corners[c]]));
-        }
-        let found = nearest(place, vertices).filter(|found| found.distance <= MAX_REACH)?;
-        let count = vertices.len();
-        let place = found.chord as f64 + found.share;
-        let c = on_chords.iter().rposition(|&corner| corner <= found.chord);
-        let c = c.unwrap_or(corners.len() - 1);
-        let ends = [corners[c], corners[(c + 1) % corners.len()]].map(|k| points[k]);
-        let from = on_chords[c];
-        let next = on_chords[(c + 1) % corners.len()];
-        let to = if next > from { next } else { next + count };
-        let [from_place, to_place] = [from, to].map(|k| k as f64);
-        let after_from = |place: f64| match place >= from_place {
-            true => place,
-            false => place + count as f64,
-        };
-        let along = after_from(place);
-        let share = |size: usize| {
-            let own = &outline.chords(size).points;
-            // The place of its own in this size, if that lies between the same corners.
-            let given = notch.in_sizes.get(size).copied().flatten();
-            let found = given.and_then(|at| nearest(at, own));
-            let found = found.map(|found| after_from(found.chord as f64 + found.share));
-            let along = found.filter(|along| *along <= to_place).unwrap_or(along);
-            let length = |a: f64, b: f64| length_between(own, a, b);
-            length(from_place, along) / length(from_place, to_place).max(f64::MIN_POSITIVE)
-        };
-        Some(Mark::between(ends, self.number(share)))
-    }
 }
 
-/// The corner of a sew line that a place on the cut line belongs to: it lies on the line of one of the edges
-/// that meet there, beyond the corner, or no place is nearer to it than the corner. The corners are indices of
-/// vertices; the one that is returned is an index among them. A place on the sew line itself lies beyond none.
-fn corner_of(place: Vec2, vertices: &[Vec2], corners: &[usize]) -> Option<usize> {
-    let count = vertices.len();
-    let beyond = |corner: usize, before: usize| {
-        let along = vertices[corner] - vertices[before % count];
-        let length = along.norm();
-        let out = place - vertices[corner];
-        let reach = out.dot(&along) / length;
-        let off = (along.perp(&out) / length).abs();
-        off <= ON_LINE && reach > ON_LINE && reach <= MAX_REACH
-    };
-    // Where two edges run on almost straight, a place square to the cut line is as near to their corner as to any
-    // other place.
-    let nearest = nearest(place, vertices).map_or(0.0, |found| found.distance);
-    let is_as_near = |corner: usize| (vertices[corner] - place).norm() <= nearest + AS_NEAR;
-    let is_on_line = nearest <= ON_LINE;
-    corners.iter().position(|&corner| {
-        is_as_near(corner)
-            || !is_on_line && (beyond(corner, corner + count - 1) || beyond(corner, corner + 1))
-    })
+/// Leaves out the vertices from one vertex to another, in the order of the line; returns the numbers of both.
+fn without_vertices_between(line: &mut DrawnLine, [from, to]: [usize; 2]) -> [usize; 2] {
+    let count = line.len();
+    let after = |k: usize| (k + count - from) % count;
+    let is_gone: Vec<bool> = (0..count)
+        .map(|k| after(k) > 0 && after(k) < after(to))
+        .collect();
+    line.remove(&is_gone);
+    let before = |k: usize| is_gone[..k].iter().filter(|is_gone| **is_gone).count();
+    [from - before(from), to - before(to)]
 }
 
-/// Length of a closed line between two places, each the index of a vertex and the share of the chord after it.
-fn length_between(ring: &[Vec2], from: f64, to: f64) -> f64 {
-    let count = ring.len();
-    let (mut length, mut at) = (0.0, from);
-    while at < to {
-        let k = at.floor();
-        let end = (k + 1.0).min(to);
-        let chord = ring[(k as usize + 1) % count] - ring[k as usize % count];
-        length += chord.norm() * (end - at);
-        at = end;
-    }
-    length
-}
-
-/// A width rounded to a thousandth of a millimetre.
-fn rounded(width: f64) -> f64 {
-    (width * 1e6).round() / 1e6
-}
-
-/// The value that occurs most often, the first of equals; 0 without values.
-fn most_common(values: &[f64]) -> f64 {
-    let count = |value: f64| values.iter().filter(|&&other| other == value).count();
-    let mut best = (0, 0.0);
-    for &value in values {
-        if count(value) > best.0 {
-            best = (count(value), value);
-        }
-    }
-    best.1
+/// Whether the cut line of a piece follows from its sew line by no allowances.
+fn is_no_allowance(fit: &CutFit) -> bool {
+    2 * fit.uneven > fit.widths.len() && fit.off_share > MAX_OFF_SHARE
 }
 
 /// Lays pieces that overlap in the coordinates of their file side by side on the table, in rows; their

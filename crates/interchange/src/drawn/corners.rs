@@ -1,10 +1,12 @@
 //! Corners of a line: where the file marks them, else where it kinks.
 
-use super::piece::{DrawnLine, Way};
+use super::piece::{DrawnLine, Span};
 use toile_geometry::Vec2;
 
 /// Least turn of a line that is a corner, where the file marks none (rad): 10 degrees.
 const MIN_KINK: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+/// Least distance at which a point of a curve tells the direction at a vertex (m).
+const MIN_WAY: f64 = 5e-4;
 /// Largest distance of a vertex from a straight line that still lies on it (m).
 pub(crate) const STRAIGHT: f64 = 1e-5;
 
@@ -13,14 +15,10 @@ pub(crate) const STRAIGHT: f64 = 1e-5;
 pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
     let count = line.len();
     let marked = line.is_corner.iter().any(|&is_corner| is_corner);
-    let is_chord = |k: usize| line.way(k) == Way::Chord;
+    let is_chord = |k: usize| line.span(k) == Span::Chord;
     let is_corner = |k: usize| {
         let is_end = !line.is_closed && (k == 0 || k + 1 == count);
-        let is_kink = || {
-            line.by_size
-                .iter()
-                .any(|points| is_kink(points, k, line.is_closed))
-        };
+        let is_kink = || (0..line.by_size.len()).any(|size| is_kink(line, size, k));
         is_end
             || further.contains(&k)
             || is_turn(line, k)
@@ -38,14 +36,14 @@ pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
     found
 }
 
-/// Whether a line that says its ways turns at a vertex: two of another kind meet there, two straight ones, or two
+/// Whether a line that says its spans turns at a vertex: two of another kind meet there, two straight ones, or two
 /// curves at an angle.
 fn is_turn(line: &DrawnLine, k: usize) -> bool {
     let count = line.len();
     let before = (k + count - 1) % count;
-    match (line.way(before), line.way(k)) {
-        (Way::Chord, Way::Chord) => false,
-        (Way::Cubic(a), Way::Cubic(b)) => {
+    match (line.span(before), line.span(k)) {
+        (Span::Chord, Span::Chord) => false,
+        (Span::Cubic(a), Span::Cubic(b)) => {
             let points = line.in_size(0);
             let at = |k: usize| points[k % count];
             // A handle may lie on its vertex; the next point then shows the direction.
@@ -60,23 +58,36 @@ fn is_turn(line: &DrawnLine, k: usize) -> bool {
                 _ => true,
             }
         }
-        (Way::Straight | Way::Chord, _) | (Way::Cubic(_), _) => true,
+        (Span::Straight | Span::Chord, _) | (Span::Cubic(_), _) => true,
     }
 }
 
-fn is_kink(points: &[Vec2], k: usize, is_closed: bool) -> bool {
+/// Whether a line turns by more than 10 degrees at a vertex in a size.
+pub(crate) fn is_kink(line: &DrawnLine, size: usize, k: usize) -> bool {
+    let points = line.in_size(size);
     let n = points.len();
-    if !is_closed && (k == 0 || k + 1 == n) {
+    if !line.is_closed && (k == 0 || k + 1 == n) {
         return false;
     }
-    let [before, after] = [points[(k + n - 1) % n], points[(k + 1) % n]];
-    let (a, b) = (points[k] - before, after - points[k]);
+    let before = (k + n - 1) % n;
+    // Points of the curve say better than vertices which way it runs; very near ones do not, as they are rounded.
+    let is_off = |p: &&Vec2| (*p - points[k]).norm() > MIN_WAY;
+    let from = line.between_in(size, before).iter().rev().find(is_off);
+    let to = line.between_in(size, k).iter().find(is_off);
+    let from = from.copied().unwrap_or(points[before]);
+    let to = to.copied().unwrap_or(points[(k + 1) % n]);
+    let (a, b) = (points[k] - from, to - points[k]);
     let turn = a.perp(&b).atan2(a.dot(&b)).abs();
     a.norm() > 0.0 && b.norm() > 0.0 && turn > MIN_KINK
 }
 
 /// Whether all points lie on the straight line from the first to the last.
 pub(crate) fn is_straight(points: &[Vec2]) -> bool {
+    lies_along(points, STRAIGHT)
+}
+
+/// Whether all points lie within a distance (m) of the straight line through the first and the last.
+pub(crate) fn lies_along(points: &[Vec2], within: f64) -> bool {
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
         return true;
     };
@@ -86,7 +97,7 @@ pub(crate) fn is_straight(points: &[Vec2]) -> bool {
         true => (along.perp(&(p - first)) / length).abs(),
         false => (p - first).norm(),
     };
-    points.iter().all(|p| off(p) <= STRAIGHT)
+    points.iter().all(|p| off(p) <= within)
 }
 
 #[cfg(test)]

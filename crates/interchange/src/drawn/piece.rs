@@ -36,21 +36,25 @@ pub(crate) struct DrawnPiece {
     pub outline: DrawnLine,
     /// The cut line in the base size, if it is another than the outline.
     pub cut_line: Option<Vec<Vec2>>,
+    /// The cut line in all sizes, where the file has it so.
+    pub cut_outline: Option<DrawnLine>,
     /// Closed lines that are cut out.
     pub holes: Vec<DrawnLine>,
     /// Lines drawn inside.
     pub inside: Vec<DrawnLine>,
     /// Notches.
     pub notches: Vec<DrawnNotch>,
+    /// Places of drill holes in each size (m).
+    pub drills: Vec<Vec<Vec2>>,
     /// Direction of the warp (rad), if the file draws a grain line.
     pub grain: Option<f64>,
     /// Both ends of the line that lies on the fold of the cloth, in the base size; the piece is then a half.
     pub fold: Option<[Vec2; 2]>,
 }
 
-/// The way from a vertex of a line to the next.
+/// What a line is from a vertex to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum Way {
+pub(crate) enum Span {
     /// A chord: curves are fitted where vertices show them.
     #[default]
     Chord,
@@ -69,9 +73,12 @@ pub(crate) struct DrawnLine {
     pub is_closed: bool,
     /// For each vertex, whether the file marks it as a corner; empty if the file marks no corners.
     pub is_corner: Vec<bool>,
-    /// For each vertex, the way to the next; chords where it is too short. Lines of several sizes have chords
-    /// alone.
-    pub ways: Vec<Way>,
+    /// For each vertex, what the line is to the next; chords where the list is too short. Lines of several sizes have
+    /// chords alone.
+    pub spans: Vec<Span>,
+    /// In each size, for each vertex the points of the curve between it and the next one (m), where the file has such
+    /// points of chords.
+    pub between: Vec<Vec<Vec<Vec2>>>,
 }
 
 /// A line as chords that follow its curves.
@@ -81,6 +88,22 @@ pub(crate) struct Chords {
     pub points: Vec<Vec2>,
     /// For each vertex of the line, its index among them.
     pub starts: Vec<usize>,
+}
+
+impl Chords {
+    /// The place on a chord as the vertex before it, and the share of the length of the span after that.
+    pub fn place(&self, chord: usize, share: f64) -> (usize, f64) {
+        let vertex = self.starts.partition_point(|&start| start <= chord) - 1;
+        let start = self.starts[vertex];
+        let end = self.starts.get(vertex + 1).copied();
+        let end = end.unwrap_or(self.points.len());
+        let at = |k: usize| self.points[k % self.points.len()];
+        let length = |k: usize| (at(k + 1) - at(k)).norm();
+        let whole: f64 = (start..end).map(length).sum();
+        let before: f64 = (start..chord).map(length).sum();
+        let part = (before + share * length(chord)) / whole.max(f64::MIN_POSITIVE);
+        (vertex, part.clamp(0.0, 1.0))
+    }
 }
 
 /// A notch.
@@ -100,39 +123,49 @@ impl DrawnLine {
         Self {
             by_size: vec![points],
             is_closed,
-            is_corner: Vec::new(),
-            ways: Vec::new(),
+            ..Self::default()
         }
     }
 
-    /// The way from a vertex to the next.
-    pub fn way(&self, vertex: usize) -> Way {
-        self.ways.get(vertex).copied().unwrap_or_default()
+    /// What the line is from a vertex to the next.
+    pub fn span(&self, vertex: usize) -> Span {
+        self.spans.get(vertex).copied().unwrap_or_default()
+    }
+
+    /// The points of the curve between a vertex and the next one in a size.
+    pub fn between_in(&self, size: usize, vertex: usize) -> &[Vec2] {
+        let own = self.between.get(size).or(self.between.first());
+        let own = own.and_then(|vertices| vertices.get(vertex));
+        own.map_or(&[], Vec::as_slice)
     }
 
     /// Its chords in a size, the curves cut into equal steps.
     pub fn chords(&self, size: usize) -> Chords {
         let vertices = self.in_size(size);
-        let is_cubic = |way: &&Way| matches!(way, Way::Cubic(_));
-        let cubics = self.ways.iter().filter(is_cubic).count();
+        let is_cubic = |way: &&Span| matches!(way, Span::Cubic(_));
+        let cubics = self.spans.iter().filter(is_cubic).count();
         let count = (CHORDS / cubics.max(1)).clamp(MIN_CHORDS, MAX_CHORDS);
         let mut chords = Chords::default();
         for (k, &start) in vertices.iter().enumerate() {
             chords.starts.push(chords.points.len());
             chords.points.push(start);
-            let is_last = k + 1 == vertices.len();
-            if let Way::Cubic(controls) = self.way(k)
-                && (self.is_closed || !is_last)
-            {
-                let end = vertices[(k + 1) % vertices.len()];
-                let curve = Curve::Cubic {
-                    start,
-                    controls,
-                    end,
-                };
-                let steps = 1..count;
-                let at = |step: usize| curve.point(step as f64 / count as f64);
-                chords.points.extend(steps.map(at));
+            if !self.is_closed && k + 1 == vertices.len() {
+                break;
+            }
+            match self.span(k) {
+                Span::Straight => {}
+                Span::Chord => chords.points.extend(self.between_in(size, k)),
+                Span::Cubic(controls) => {
+                    let end = vertices[(k + 1) % vertices.len()];
+                    let curve = Curve::Cubic {
+                        start,
+                        controls,
+                        end,
+                    };
+                    let steps = 1..count;
+                    let at = |step: usize| curve.point(step as f64 / count as f64);
+                    chords.points.extend(steps.map(at));
+                }
             }
         }
         chords
@@ -147,16 +180,21 @@ impl DrawnLine {
     #[must_use]
     pub fn mapped(&self, map: impl Fn(Vec2) -> Vec2) -> Self {
         let points = |points: &Vec<Vec2>| points.iter().map(|&p| map(p)).collect();
-        let way = |way: &Way| match way {
-            Way::Cubic(handles) => Way::Cubic(handles.map(&map)),
-            Way::Chord => Way::Chord,
-            Way::Straight => Way::Straight,
+        let span = |span: &Span| match span {
+            Span::Cubic(handles) => Span::Cubic(handles.map(&map)),
+            Span::Chord => Span::Chord,
+            Span::Straight => Span::Straight,
         };
         Self {
             by_size: self.by_size.iter().map(points).collect(),
             is_closed: self.is_closed,
             is_corner: self.is_corner.clone(),
-            ways: self.ways.iter().map(way).collect(),
+            spans: self.spans.iter().map(span).collect(),
+            between: self
+                .between
+                .iter()
+                .map(|vertices| vertices.iter().map(points).collect())
+                .collect(),
         }
     }
 
@@ -175,16 +213,56 @@ impl DrawnLine {
     pub fn reverse(&mut self) {
         self.by_size.iter_mut().for_each(|points| points.reverse());
         self.is_corner.reverse();
-        if !self.ways.is_empty() {
-            self.ways.resize(self.len(), Way::Chord);
-            self.ways.reverse();
-            // The way to a vertex is now the way from it.
-            self.ways.rotate_left(1);
-            for way in &mut self.ways {
-                if let Way::Cubic(handles) = way {
+        if !self.spans.is_empty() {
+            self.spans.resize(self.len(), Span::Chord);
+            self.spans.reverse();
+            // The span before a vertex is after it now.
+            self.spans.rotate_left(1);
+            for span in &mut self.spans {
+                if let Span::Cubic(handles) = span {
                     handles.reverse();
                 }
             }
+        }
+        for stretches in &mut self.between {
+            stretches.iter_mut().for_each(|points| points.reverse());
+            stretches.reverse();
+            // Of an open line the last stretch is empty.
+            if !stretches.is_empty() {
+                stretches.rotate_left(1);
+            }
+        }
+    }
+
+    /// Removes the vertices of these numbers, and the spans before them; points between go to the vertex before.
+    pub fn remove(&mut self, is_gone: &[bool]) {
+        let count = self.len();
+        if !self.spans.is_empty() {
+            self.spans.resize(count, Span::Chord);
+            let mut stays = (0..count).map(|k| !is_gone[(k + 1) % count]);
+            self.spans.retain(|_| stays.next().unwrap_or(true));
+        }
+        for stretches in &mut self.between {
+            let mut kept: Vec<Vec<Vec2>> = Vec::new();
+            let mut first: Vec<Vec2> = Vec::new();
+            for (points, &is_gone) in std::mem::take(stretches).into_iter().zip(is_gone) {
+                match (is_gone, kept.last_mut()) {
+                    (false, _) => kept.push(points),
+                    (true, Some(last)) => last.extend(points),
+                    (true, None) => first.extend(points),
+                }
+            }
+            if let Some(last) = kept.last_mut() {
+                last.extend(first);
+            }
+            *stretches = kept;
+        }
+        let mut kept = is_gone.iter().map(|is_gone| !is_gone).cycle();
+        for points in &mut self.by_size {
+            points.retain(|_| kept.next().unwrap_or(true));
+        }
+        if !self.is_corner.is_empty() {
+            self.is_corner.retain(|_| kept.next().unwrap_or(true));
         }
     }
 
@@ -198,7 +276,7 @@ impl DrawnLine {
                 k => k - 1,
             };
             let near = |points: &Vec<Vec2>| (points[k] - points[before]).norm() <= tolerance;
-            let is_loop = matches!(self.way(before), Way::Cubic(_));
+            let is_loop = matches!(self.span(before), Span::Cubic(_));
             count > 1 && !is_loop && self.by_size.iter().all(near)
         };
         let gone: Vec<bool> = (0..count).map(repeats).collect();
@@ -209,19 +287,7 @@ impl DrawnLine {
                 self.is_corner[before] = true;
             }
         }
-        if !self.ways.is_empty() {
-            self.ways.resize(count, Way::Chord);
-            // The way that goes is the one before the vertex.
-            let mut stays = (0..count).map(|k| !gone[(k + 1) % count]);
-            self.ways.retain(|_| stays.next().unwrap_or(true));
-        }
-        let mut kept = gone.iter().map(|gone| !gone).cycle();
-        for points in &mut self.by_size {
-            points.retain(|_| kept.next().unwrap_or(true));
-        }
-        if !self.is_corner.is_empty() {
-            self.is_corner.retain(|_| kept.next().unwrap_or(true));
-        }
+        self.remove(&gone);
     }
 }
 
@@ -239,24 +305,28 @@ mod tests {
             ],
             is_closed: false,
             is_corner: vec![false, true, false, false],
-            ways: Vec::new(),
+            spans: Vec::new(),
+            between: vec![vec![vec![], vec![at(0.5)], vec![at(1.05)], vec![]]; 2],
         };
         line.drop_repeats(1e-6);
         assert_eq!(line.by_size[0], [at(0.0), at(1.0), at(1.0)]);
         assert_eq!(line.by_size[1], [at(0.0), at(1.0), at(1.1)]);
         assert_eq!(line.is_corner, [true, false, false]);
+        assert_eq!(line.between[0], [vec![at(0.5)], vec![at(1.05)], vec![]]);
+        line.reverse();
+        assert_eq!(line.between[1], [vec![at(1.05)], vec![at(0.5)], vec![]]);
     }
 
     #[test]
-    fn ways_follow_their_vertices() {
+    fn spans_follow_their_vertices() {
         let at = |x: f64, y: f64| Vec2::new(x, y);
         let handles = [at(1.0, 0.5), at(1.0, 0.8)];
         let mut line = DrawnLine {
-            ways: vec![
-                Way::Straight,
-                Way::Straight,
-                Way::Cubic(handles),
-                Way::Straight,
+            spans: vec![
+                Span::Straight,
+                Span::Straight,
+                Span::Cubic(handles),
+                Span::Straight,
             ],
             ..DrawnLine::one(
                 vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 0.0), at(0.0, 1.0)],
@@ -265,8 +335,8 @@ mod tests {
         };
         line.drop_repeats(1e-9);
         assert_eq!(
-            line.ways,
-            [Way::Straight, Way::Cubic(handles), Way::Straight]
+            line.spans,
+            [Span::Straight, Span::Cubic(handles), Span::Straight]
         );
         let area = line.area(0);
         let mut turned = line.clone();
@@ -275,7 +345,7 @@ mod tests {
             turned.in_size(0),
             [at(0.0, 1.0), at(1.0, 0.0), at(0.0, 0.0)]
         );
-        assert_eq!(turned.way(0), Way::Cubic([handles[1], handles[0]]));
+        assert_eq!(turned.span(0), Span::Cubic([handles[1], handles[0]]));
         assert!((turned.area(0) + area).abs() < 1e-12);
         let chords = line.chords(0);
         assert_eq!(chords.starts, [0, 1, 1 + MAX_CHORDS]);

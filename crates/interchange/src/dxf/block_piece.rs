@@ -3,13 +3,19 @@
 use super::drawing::{Block, Drawn};
 use super::labels::Labels;
 use crate::drawn::chain::joined;
-use toile_geometry::{Vec2, ring_area};
+use std::collections::HashSet;
+use toile_geometry::{Bounds2, Vec2, point_segment_distance, ring_area};
 use toile_pattern::NotchKind;
 
 /// Largest gap between the ends of open lines that meet (units of the file).
 const GAP: f64 = 0.02;
 
-/// What a layer of the standards holds.
+/// Distance of the ends of a sew line from the fold that they lie on, as a share of its length (1).
+const ON_FOLD: f64 = 1e-3;
+/// Share of the square of its length below which a closed line encloses nothing (1).
+const FLAT: f64 = 1e-6;
+
+/// Contents of a layer of the standards holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layer {
     Cut,
@@ -23,8 +29,8 @@ pub(super) enum Layer {
     Cutout,
     Drill,
     Sew,
-    /// Dense twins of lines, for checks of quality.
-    Twin,
+    /// Dense twins of lines, for checks of quality, by the number of the layer: 84 to 87.
+    Twin(u16),
     /// Text and reference lines.
     Annotation,
     /// A layer that is in neither standard.
@@ -51,7 +57,7 @@ impl Layer {
             Ok(82) => Self::Notches(NotchKind::Check),
             // A U notch is nearest to a V.
             Ok(83) => Self::Notches(NotchKind::V),
-            Ok(84..=87) => Self::Twin,
+            Ok(number @ 84..=87) => Self::Twin(number),
             Ok(9 | 10 | 12 | 15 | 19 | 26) => Self::Annotation,
             _ => Self::Other,
         }
@@ -59,14 +65,51 @@ impl Layer {
 }
 
 /// A line in a block, in the units of the file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct BlockLine {
+    /// Vertices in order.
     pub points: Vec<Vec2>,
     pub is_closed: bool,
+    /// For each vertex the points of a curve between it and the next one; empty if there are none on the line.
+    pub between: Vec<Vec<Vec2>>,
 }
 
 impl BlockLine {
-    /// Its length, without the way back to its start.
+    /// A line through points; those of the set are no vertices.
+    fn new((points, is_closed): (Vec<Vec2>, bool), between: &HashSet<[u64; 2]>) -> Self {
+        let is_between = |p: &Vec2| between.contains(&bits(*p));
+        let first = points.iter().position(|p| !is_between(p));
+        let (false, Some(first)) = (between.is_empty(), first) else {
+            return Self {
+                points,
+                is_closed,
+                ..Self::default()
+            };
+        };
+        let mut line = Self {
+            is_closed,
+            ..Self::default()
+        };
+        let mut points = points;
+        points.rotate_left(first);
+        for p in points {
+            match (is_between(&p), line.between.last_mut()) {
+                (true, Some(last)) => last.push(p),
+                (true, None) | (false, _) => {
+                    line.points.push(p);
+                    line.between.push(Vec::new());
+                }
+            }
+        }
+        line
+    }
+
+    /// Area that the vertices enclose (square units of the file).
+    pub fn area(&self) -> f64 {
+        ring_area(&self.points).abs()
+    }
+
+    /// Length of the line, without the way back to its start.
     pub fn length(&self) -> f64 {
         self.points
             .windows(2)
@@ -75,12 +118,17 @@ impl BlockLine {
     }
 }
 
+/// A place as a key of sets.
+fn bits(p: Vec2) -> [u64; 2] {
+    [p.x, p.y].map(f64::to_bits)
+}
+
 /// A piece in one size as its block has it, in the units of the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockPiece {
     /// Name of the block.
     pub block: String,
-    /// Its texts.
+    /// Texts of the piece.
     pub labels: Labels,
     /// Closed lines of the cut layer, the largest first.
     pub cut: Vec<BlockLine>,
@@ -96,14 +144,18 @@ pub(super) struct BlockPiece {
     pub drills: Vec<Vec2>,
     /// Numbers of grade rules, with the places that they stand at.
     pub rules: Vec<(Vec2, u32)>,
-    /// Whether it has dense twins of its lines.
-    pub has_twins: bool,
+    /// Lines of notches that are drawn as such.
+    pub notch_lines: Vec<(BlockLine, NotchKind)>,
+    /// Dense twins of its lines, with the numbers of their layers.
+    pub twins: Vec<(u16, BlockLine)>,
     /// Number of notches of a U shape, which is not known here.
     pub u_notches: usize,
     /// Number of notches with a depth of their own.
     pub depths: usize,
     /// Number of cut lines that are not closed.
     pub open_cuts: usize,
+    /// Number of closed cut lines that enclose nothing.
+    pub flat_cuts: usize,
     /// Number of lines on layers of grading, stripes, plaids and annotation.
     pub references: usize,
     /// Number of lines and points on layers of no standard.
@@ -118,30 +170,30 @@ impl BlockPiece {
             ..Self::default()
         };
         let mut lines: Vec<(Layer, Vec<Vec<Vec2>>)> = Vec::new();
-        let mut put = |piece: &mut Self, layer: Layer, points: &[Vec2], is_closed: bool| {
-            let mut points = points.to_vec();
-            if is_closed {
-                let start = points.first().copied();
-                points.extend(start);
-            }
-            if layer == Layer::Other {
-                piece.others += 1;
-            } else if layer == Layer::Twin {
-                piece.has_twins = true;
-            } else if let Some((_, all)) = lines.iter_mut().find(|(known, _)| *known == layer) {
-                all.push(points);
-            } else {
-                lines.push((layer, vec![points]));
-            }
-        };
+        let mut inner = HashSet::new();
         for entity in &block.entities {
             let layer = Layer::of(&entity.layer);
             match &entity.drawn {
-                Drawn::Line { points, is_closed } => {
-                    if let Layer::Notches(kind) = layer {
-                        piece.notch_line(points, kind);
+                Drawn::Line {
+                    points,
+                    is_closed,
+                    between,
+                } => {
+                    let flagged = points.iter().zip(between).filter(|(_, is)| **is);
+                    inner.extend(flagged.map(|(p, _)| bits(*p)));
+                    let mut points = points.clone();
+                    if *is_closed {
+                        let start = points.first().copied();
+                        points.extend(start);
+                    }
+                    if layer == Layer::Other {
+                        piece.others += 1;
+                    } else if layer == Layer::Drill {
+                        piece.drills.push(Bounds2::of(points).centre());
+                    } else if let Some((_, all)) = lines.iter_mut().find(|(l, _)| *l == layer) {
+                        all.push(points);
                     } else {
-                        put(&mut piece, layer, points, *is_closed);
+                        lines.push((layer, vec![points]));
                     }
                 }
                 Drawn::Point {
@@ -159,10 +211,8 @@ impl BlockPiece {
             }
         }
         for (layer, all) in lines {
-            let found = joined(all, GAP);
-            let found = found
-                .into_iter()
-                .map(|(points, is_closed)| BlockLine { points, is_closed });
+            let found = joined(all, GAP).into_iter();
+            let found = found.map(|line| BlockLine::new(line, &inner));
             match layer {
                 Layer::Cut => piece.cut.extend(found),
                 Layer::Sew => piece.sew.extend(found),
@@ -171,12 +221,9 @@ impl BlockPiece {
                 Layer::Mirror => piece.mirror.extend(found),
                 Layer::Grain => piece.grain.extend(found),
                 Layer::GradeReference | Layer::Annotation => piece.references += found.count(),
-                Layer::TurnPoints
-                | Layer::CurvePoints
-                | Layer::Notches(_)
-                | Layer::Drill
-                | Layer::Twin
-                | Layer::Other => {}
+                Layer::Notches(kind) => piece.notch_lines.extend(found.map(|line| (line, kind))),
+                Layer::Twin(number) => piece.twins.extend(found.map(|line| (number, line))),
+                Layer::TurnPoints | Layer::CurvePoints | Layer::Drill | Layer::Other => {}
             }
         }
         let drawn = piece.cut.len();
@@ -184,9 +231,32 @@ impl BlockPiece {
             .cut
             .retain(|line| line.is_closed && line.points.len() > 2);
         piece.open_cuts = drawn - piece.cut.len();
-        let area = |line: &BlockLine| ring_area(&line.points).abs();
-        piece.cut.sort_by(|a, b| area(b).total_cmp(&area(a)));
+        let closed = piece.cut.len();
         piece
+            .cut
+            .retain(|line| line.area() > FLAT * line.length().powi(2));
+        piece.flat_cuts = closed - piece.cut.len();
+        piece.cut.sort_by(|a, b| b.area().total_cmp(&a.area()));
+        piece.close_on_fold();
+        piece
+    }
+
+    /// Closes the sew line of a half that ends on the fold.
+    fn close_on_fold(&mut self) {
+        if self.sew.iter().any(|line| line.is_closed) {
+            return;
+        }
+        for line in self.sew.iter_mut().filter(|line| line.points.len() > 2) {
+            let gap = ON_FOLD * line.length();
+            let ends = [line.points[0], line.points[line.points.len() - 1]];
+            let is_on = |fold: &BlockLine| {
+                ends.iter().all(|&end| {
+                    let mut chords = fold.points.windows(2);
+                    chords.any(|pair| point_segment_distance(end, [pair[0], pair[1]]) <= gap)
+                })
+            };
+            line.is_closed = self.mirror.iter().any(is_on);
+        }
     }
 
     fn point(&mut self, layer: Layer, is_u: bool, (at, thickness): (Vec2, Option<f64>)) {
@@ -215,15 +285,10 @@ impl BlockPiece {
             | Layer::Internal
             | Layer::Cutout
             | Layer::Sew
-            | Layer::Twin
+            | Layer::Twin(_)
             | Layer::Annotation => {}
             Layer::Other => self.others += 1,
         }
-    }
-
-    /// A notch that is drawn as a line across the boundary: one end of it lies there.
-    fn notch_line(&mut self, points: &[Vec2], kind: NotchKind) {
-        self.notches.extend(points.first().map(|&at| (at, kind)));
     }
 
     fn text(&mut self, at: Vec2, text: &str) {
@@ -237,24 +302,58 @@ impl BlockPiece {
         }
     }
 
-    /// Name of the piece: its label, else the name of its block without the size at its end.
-    pub fn name(&self) -> String {
-        let label = self.labels.value(&["piecename", "piece"]);
-        if let Some(name) = label {
-            return name.to_owned();
-        }
-        let size = self.size().filter(|size| !size.is_empty());
-        let stripped = size.and_then(|size| {
-            let block = self.block.strip_suffix(size.as_str())?;
-            Some(block.trim_end_matches(['_', '-', ' ']).to_owned())
-        });
-        let name = stripped.filter(|name| !name.is_empty());
-        name.unwrap_or_else(|| self.block.clone())
+    /// Name of the piece, as its label says.
+    pub fn label(&self) -> Option<&str> {
+        self.labels.value(&["piecename", "piece"])
     }
 
-    /// Its size, as its label says.
+    /// Name of its block without a size at the end.
+    pub fn stem(&self, size: &str) -> Option<&str> {
+        let cut = self.block.len().checked_sub(size.len())?;
+        let (stem, end) = self.block.split_at_checked(cut)?;
+        let stem = stem.trim_end_matches(['_', '-', ' ']);
+        let is_size = !size.is_empty() && end.eq_ignore_ascii_case(size);
+        (is_size && !stem.is_empty()).then_some(stem)
+    }
+
+    /// The line that the panel becomes: the sew line where there is one.
+    pub fn outline(&self) -> Option<&BlockLine> {
+        let sew = self.sew.iter().find(|line| line.is_closed);
+        sew.or(self.cut.first())
+    }
+
+    /// Leaves out last vertices of closed lines that repeat the first.
+    pub fn drop_repeated_starts(&mut self) {
+        let groups = [
+            &mut self.cut,
+            &mut self.sew,
+            &mut self.internal,
+            &mut self.cutouts,
+        ];
+        for line in groups.into_iter().flatten().filter(|line| line.is_closed) {
+            while line.points.len() > 3 && line.points.last() == line.points.first() {
+                line.points.pop();
+                let last = line.between.pop().unwrap_or_default();
+                if let Some(before) = line.between.last_mut() {
+                    before.extend(last);
+                }
+            }
+        }
+    }
+
+    /// Number of marks that stand in the block of the sample size alone.
+    pub fn marks(&self) -> usize {
+        self.turn_points.len() + self.notches.len() + self.notch_lines.len()
+    }
+
+    /// The size, as its label says.
     pub fn size(&self) -> Option<String> {
         let size = self.labels.value(&["size", "sizename"]);
         size.map(str::to_owned)
+    }
+
+    /// The size that some programs label as the sample size.
+    pub fn sample_size(&self) -> Option<String> {
+        self.labels.value(&["samplesize"]).map(str::to_owned)
     }
 }

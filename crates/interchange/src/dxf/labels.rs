@@ -1,14 +1,14 @@
 //! The texts of a pattern in DXF: `Key: value`, in any case, with or without a blank after the colon.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The texts of a block, or of the style.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Labels {
     /// Values by their keys in lower case without blanks; the first of several holds.
     values: BTreeMap<String, String>,
-    /// Texts that are no pair.
-    pub others: Vec<String>,
+    /// Texts that are no pair, each once.
+    pub others: BTreeSet<String>,
 }
 
 impl Labels {
@@ -22,10 +22,17 @@ impl Labels {
             }
             _ => {
                 let text = text.trim();
-                if !text.is_empty() && !self.others.iter().any(|known| known == text) {
-                    self.others.push(text.to_owned());
+                if !text.is_empty() {
+                    self.others.insert(text.to_owned());
                 }
             }
+        }
+    }
+
+    /// Takes the pairs of others.
+    pub fn add_all(&mut self, others: &Self) {
+        for (key, value) in &others.values {
+            self.values.entry(key.clone()).or_insert(value.clone());
         }
     }
 
@@ -42,6 +49,13 @@ impl Labels {
                 name.push_str(text);
             }
         }
+    }
+
+    /// Whether a quantity is there, and is 0.
+    pub fn is_quantity_nothing(&self) -> bool {
+        let text = self.value(&["quantity"]).unwrap_or("1");
+        let mut counts = text.split(',').map(|count| count.trim().parse::<u32>());
+        counts.all(|count| count == Ok(0))
     }
 
     /// Number of pieces of a quantity, as in `2` or, left and right, `1,1`; `None` if it is missing or 0.
@@ -78,7 +92,7 @@ mod tests {
         assert_eq!(labels.value(&["sizename", "size"]), Some("M"));
         assert_eq!(labels.value(&["annotation"]), None);
         assert_eq!(labels.quantity(), Some([1, 1]));
-        assert_eq!(labels.others, ["NM", ": x"]);
+        assert!(labels.others.iter().eq([": x", "NM"]));
     }
 
     #[test]
@@ -86,6 +100,7 @@ mod tests {
         let quantity = |text: &str| {
             let mut labels = Labels::default();
             labels.add(text);
+            assert_eq!(labels.is_quantity_nothing(), text.ends_with('0'));
             labels.quantity()
         };
         assert_eq!(quantity("Quantity: 0,0"), None);

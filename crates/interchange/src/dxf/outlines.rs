@@ -2,7 +2,7 @@
 
 use super::block_piece::{BlockLine, BlockPiece};
 use crate::drawn::allowance::distance;
-use toile_geometry::{Polygon, Vec2};
+use toile_geometry::{Bounds2, Polygon, Vec2};
 
 /// Distance from an outline at which a mark still belongs to it, as a share of the outline's length.
 const ON_OUTLINE: f64 = 1e-3;
@@ -12,12 +12,18 @@ const ON_OUTLINE: f64 = 1e-3;
 pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
     let cut = std::mem::take(&mut piece.cut);
     let mut outer: Vec<BlockLine> = Vec::new();
+    let mut shapes: Vec<(Bounds2, Polygon)> = Vec::new();
     for line in cut {
+        let bounds = Bounds2::of(line.points.iter().copied());
         let first = line.points[0];
-        let holds = |known: &BlockLine| Polygon::new(known.points.clone()).contains(first);
-        match outer.iter().any(holds) {
-            true => piece.cutouts.push(line),
-            false => outer.push(line),
+        let holds = |(around, shape): &(Bounds2, Polygon)| {
+            around.contains(first) && around.meets(&bounds) && shape.contains(first)
+        };
+        if shapes.iter().any(holds) {
+            piece.cutouts.push(line);
+        } else {
+            shapes.push((bounds, Polygon::new(line.points.clone())));
+            outer.push(line);
         }
     }
     if outer.len() < 2 {
@@ -27,10 +33,12 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
         piece.cut = vec![line];
         return vec![piece];
     }
-    let of = |(k, line): (usize, BlockLine)| {
-        let around = Polygon::new(line.points.clone());
+    let of = |(k, (line, (bounds, around))): (usize, (BlockLine, (Bounds2, Polygon)))| {
         let gap = ON_OUTLINE * line.length();
-        let on = |p: &Vec2| around.contains(*p) || distance(*p, &line.points) <= gap;
+        let near = bounds.grown(gap);
+        let on = |p: &Vec2| {
+            near.contains(*p) && (around.contains(*p) || distance(*p, &line.points) <= gap)
+        };
         let lines = |all: &[BlockLine]| -> Vec<BlockLine> {
             all.iter()
                 .filter(|line| on(&line.points[0]))
@@ -53,6 +61,18 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
                 .filter(|(at, _)| on(at))
                 .collect(),
             drills: points(&piece.drills),
+            notch_lines: piece
+                .notch_lines
+                .iter()
+                .filter(|(line, _)| line.points.iter().any(on))
+                .cloned()
+                .collect(),
+            twins: piece
+                .twins
+                .iter()
+                .filter(|(_, line)| on(&line.points[0]))
+                .cloned()
+                .collect(),
             rules: piece
                 .rules
                 .iter()
@@ -60,13 +80,23 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
                 .filter(|(at, _)| on(at))
                 .collect(),
             cut: vec![line.clone()],
-            ..piece.clone()
+            block: piece.block.clone(),
+            labels: piece.labels.clone(),
+            ..BlockPiece::default()
         };
-        if k > 0 {
+        if k == 0 {
+            // Parts of no outline are told with the first.
+            own.u_notches = piece.u_notches;
+            own.depths = piece.depths;
+            own.open_cuts = piece.open_cuts;
+            own.flat_cuts = piece.flat_cuts;
+            own.references = piece.references;
+            own.others = piece.others;
+        } else {
             own.labels.add_to_name(&format!(" {}", k + 1));
             own.block = format!("{} {}", own.block, k + 1);
         }
         own
     };
-    outer.into_iter().enumerate().map(of).collect()
+    outer.into_iter().zip(shapes).enumerate().map(of).collect()
 }

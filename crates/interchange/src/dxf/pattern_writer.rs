@@ -4,12 +4,13 @@
 //! every size, so that readers can take shifts of points from one to another.
 
 use super::writer::DxfWriter;
+use crate::drawn::drill::is_drill;
 use crate::exchange::{SizedDraft, WriteSource};
 use crate::{FormatError, Loss};
 use std::collections::BTreeSet;
-use toile_cut::{CutNotch, CutOptions, CutPiece, PieceRing, PieceSegment};
+use toile_cut::{CutNotch, CutOptions, CutPiece, InsideLine, PieceRing, PieceSegment};
 use toile_geometry::{Bounds2, Curve, Vec2};
-use toile_pattern::{Cut, Draft, NotchKind, Panel, Piece, PieceId};
+use toile_pattern::{Cut, Draft, Name, NotchKind, Panel, Piece, PieceId};
 
 /// Largest distance of a chord from its curve (m).
 const FLATNESS: f64 = 4e-5;
@@ -213,11 +214,30 @@ impl PatternWriter<'_> {
             }
         }
         for line in &cut.inside {
-            self.dxf.polyline("8", &line.points, false);
+            match self.drill_of(line) {
+                Some(at) => self.dxf.mark("13", at, &[(30, 0.0)]),
+                None => self.dxf.polyline("8", &line.points, false),
+            }
         }
         if let Some(ends) = grain_line(cut) {
             self.dxf.polyline("7", &ends, false);
         }
+    }
+
+    /// The drill hole that a line inside marks.
+    fn drill_of(&self, line: &InsideLine) -> Option<Vec2> {
+        let Name::Drawn(id) = line.name else {
+            return None;
+        };
+        let ends = [*line.points.first()?, *line.points.last()?];
+        let mut lines = self
+            .source
+            .pattern
+            .panels
+            .iter()
+            .flat_map(|panel| &panel.lines);
+        let drawn = lines.find(|drawn| drawn.id == id)?;
+        is_drill(&drawn.name, (ends[1] - ends[0]).norm()).then(|| 0.5 * (ends[0] + ends[1]))
     }
 
     /// Corners and curve points of the cut line.

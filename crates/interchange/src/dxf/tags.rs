@@ -4,6 +4,8 @@ use crate::FormatError;
 
 /// Most bytes of a file that is read.
 const MAX_BYTES: usize = 64 << 20;
+/// Largest coordinate (units of the file): 10 km in millimetres.
+const MAX_PLACE: f64 = 1e7;
 /// Start of a binary DXF.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
 
@@ -35,6 +37,19 @@ impl Tag<'_> {
                 format!("line {}", self.line + 1),
                 format!("{:?} is no number", String::from_utf8_lossy(self.value)),
                 "write the file again from the program that it comes from",
+            )),
+        }
+    }
+
+    /// The value as a coordinate.
+    pub fn place(&self) -> Result<f64, FormatError> {
+        let value = self.number()?;
+        match value.abs() <= MAX_PLACE {
+            true => Ok(value),
+            false => Err(FormatError::new(
+                format!("line {}", self.line + 1),
+                format!("{value:e} is no place on a pattern"),
+                format!("move the drawing near its origin: at most {MAX_PLACE:e} units away"),
             )),
         }
     }

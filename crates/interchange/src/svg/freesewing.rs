@@ -6,7 +6,7 @@ use super::piece::SvgPiece;
 use super::region::{Region, places};
 use crate::Loss;
 use crate::drawn::allowance::nearest;
-use crate::drawn::piece::{Chords, DrawnLine, Way};
+use crate::drawn::piece::{Chords, DrawnLine, Span};
 use toile_geometry::Vec2;
 use toile_pattern::{Cut, NotchKind};
 
@@ -201,8 +201,8 @@ fn outline(
             if !line.is_closed && line.len() > 2 && ends(&line).into_iter().all(on_fold) {
                 line.is_closed = true;
                 let count = line.len();
-                line.ways.resize(count - 1, Way::Straight);
-                line.ways.push(Way::Straight);
+                line.spans.resize(count - 1, Span::Straight);
+                line.spans.push(Span::Straight);
             }
             if line.is_closed {
                 let used = candidates.iter().map(|(k, ..)| *k).collect();
@@ -270,7 +270,7 @@ fn cut_line(sew: &DrawnLine, allowance: Vec<DrawnLine>) -> DrawnLine {
     }
     let mut whole = whole.unwrap_or(sew);
     whole.is_closed = true;
-    whole.ways.resize(whole.len(), Way::Straight);
+    whole.spans.resize(whole.len(), Span::Straight);
     whole
 }
 
@@ -329,7 +329,7 @@ fn along(chords: &Chords, from: f64, to: f64) -> DrawnLine {
 
 fn straight(points: Vec<Vec2>) -> DrawnLine {
     DrawnLine {
-        ways: vec![Way::Straight; points.len() - 1],
+        spans: vec![Span::Straight; points.len() - 1],
         ..DrawnLine::one(points, false)
     }
 }

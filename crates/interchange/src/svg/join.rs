@@ -1,6 +1,6 @@
 //! Joins open lines whose ends meet, with their curves.
 
-use crate::drawn::piece::{DrawnLine, Way};
+use crate::drawn::piece::{DrawnLine, Span};
 use toile_geometry::Vec2;
 
 /// Largest number of open lines that are joined; more are no outline.
@@ -53,7 +53,7 @@ pub(super) fn returned(mut line: DrawnLine, gap: f64) -> DrawnLine {
         return line;
     }
     line.by_size[0].pop();
-    line.ways.truncate(count - 1);
+    line.spans.truncate(count - 1);
     line.is_closed = true;
     line
 }
@@ -66,14 +66,14 @@ pub(super) fn ends(line: &DrawnLine) -> [Vec2; 2] {
 }
 
 fn has_curve(line: &DrawnLine) -> bool {
-    line.ways.iter().any(|way| matches!(way, Way::Cubic(_)))
+    line.spans.iter().any(|way| matches!(way, Span::Cubic(_)))
 }
 
 /// Appends a line that begins at the end of another.
 pub(super) fn append(line: &mut DrawnLine, next: DrawnLine) {
     let count = line.len();
-    line.ways.resize(count.saturating_sub(1), Way::Straight);
-    line.ways.extend(next.ways);
+    line.spans.resize(count.saturating_sub(1), Span::Straight);
+    line.spans.extend(next.spans);
     let points = next.by_size.into_iter().next().unwrap_or_default();
     line.by_size[0].extend(points.into_iter().skip(1));
 }
@@ -108,7 +108,7 @@ mod tests {
         assert_eq!(found.len(), 1);
         assert!(found[0].is_closed);
         assert!((found[0].area(0) - whole[0].area(0)).abs() < 1e-12);
-        assert_eq!(found[0].ways.len(), found[0].len());
+        assert_eq!(found[0].spans.len(), found[0].len());
     }
 
     #[test]

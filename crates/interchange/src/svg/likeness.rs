@@ -1,13 +1,13 @@
 //! Whether lines are those that were written, by their shapes.
 
 use super::kinds::LineKind;
-use crate::drawn::piece::{DrawnLine, Way};
+use crate::drawn::piece::{DrawnLine, Span};
 use kurbo::{CubicBez, Line, ParamCurveNearest, PathSeg, Point, Rect, Shape};
 use toile_geometry::{Bounds2, Vec2};
 
 /// Largest distance of lines that are alike (mm).
 const ALIKE: f64 = 0.01;
-/// Shares of a way at which it is compared.
+/// Shares of a segment at which it is compared.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// Lines of a panel, by their kinds (mm, y down).
@@ -22,7 +22,7 @@ pub(super) struct Outlines {
 struct Kind {
     word: Option<&'static str>,
     count: usize,
-    ways: Vec<(PathSeg, Rect)>,
+    segments: Vec<(PathSeg, Rect)>,
 }
 
 impl Outlines {
@@ -35,7 +35,7 @@ impl Outlines {
             self.kinds.push(Kind {
                 word,
                 count: 0,
-                ways: Vec::new(),
+                segments: Vec::new(),
             });
         }
         for line in lines {
@@ -44,18 +44,18 @@ impl Outlines {
             let last = points.len() - usize::from(!line.is_closed && !points.is_empty());
             for from in 0..last {
                 let ends = [points[from], points[(from + 1) % points.len()]].map(at);
-                let way = match line.way(from) {
-                    Way::Cubic(handles) => {
+                let segment = match line.span(from) {
+                    Span::Cubic(handles) => {
                         let [a, b] = handles.map(at);
                         PathSeg::Cubic(CubicBez::new(ends[0], a, b, ends[1]))
                     }
-                    Way::Chord | Way::Straight => PathSeg::Line(Line::new(ends[0], ends[1])),
+                    Span::Chord | Span::Straight => PathSeg::Line(Line::new(ends[0], ends[1])),
                 };
-                let bounds = way.bounding_box();
+                let bounds = segment.bounding_box();
                 let low = Vec2::new(bounds.x0, bounds.y0);
                 let own = Bounds2::of([low, Vec2::new(bounds.x1, bounds.y1)]);
                 self.bounds = Some(self.bounds.map_or(own, |all| all.union(&own)));
-                self.kinds[k].ways.push((way, bounds));
+                self.kinds[k].segments.push((segment, bounds));
             }
             self.kinds[k].count += 1;
         }
@@ -67,7 +67,7 @@ impl Outlines {
     }
 }
 
-/// The way that lines were moved from where they were written (mm), if they are alike but for it.
+/// The segment that lines were moved from where they were written (mm), if they are alike but for it.
 pub(super) fn are_alike(written: &Outlines, found: &Outlines) -> Option<Vec2> {
     let (before, after) = (written.bounds?, found.bounds?);
     let by = after.centre() - before.centre();
@@ -86,18 +86,18 @@ pub(super) fn are_alike(written: &Outlines, found: &Outlines) -> Option<Vec2> {
     is_alike.then_some(by)
 }
 
-/// Whether lines moved by a way lie on others.
+/// Whether lines moved by a segment lie on others.
 fn lie_on(lines: &Kind, others: &Kind, by: Vec2) -> bool {
     use kurbo::ParamCurve;
     let by = kurbo::Vec2::new(by.x, by.y);
     let mut guess = 0;
-    let count = others.ways.len();
-    lines.ways.iter().all(|(way, _)| {
+    let count = others.segments.len();
+    lines.segments.iter().all(|(segment, _)| {
         SHARES.iter().all(|&share| {
-            let p = way.eval(share) + by;
+            let p = segment.eval(share) + by;
             // Lines are mostly compared in their own order.
             let near = |k: &usize| {
-                let (other, bounds) = &others.ways[*k];
+                let (other, bounds) = &others.segments[*k];
                 bounds.inflate(ALIKE, ALIKE).contains(p)
                     && other.nearest(p, 1e-6).distance_sq <= ALIKE * ALIKE
             };

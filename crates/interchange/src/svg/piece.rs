@@ -3,13 +3,13 @@
 use crate::Loss;
 use crate::drawn::builder::ON_VERTEX;
 use crate::drawn::inset::inset;
-use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPiece, Way};
+use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPiece, Span};
 use toile_geometry::{Vec2, ring_area};
 use toile_pattern::{Cut, NotchKind};
 
 /// Vertices that lie nearer to the one before are repeats (m).
 const REPEAT: f64 = 1e-7;
-/// Turn of straight ways in a row that are the chords of a curve, at most (rad): 10 degrees.
+/// Turn of straight spans in a row that are the chords of a curve, at most (rad): 10 degrees.
 const MAX_TURN: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 /// Least number of such turns in a row.
 const MIN_TURNS: usize = 4;
@@ -101,6 +101,8 @@ impl SvgPiece {
             cut: self.quantity,
             outline,
             cut_line,
+            cut_outline: None,
+            drills: Vec::new(),
             holes: inner(&self.holes, 2),
             inside: inner(&self.inside, 2),
             notches: self.notches.iter().map(notch).collect(),
@@ -119,7 +121,7 @@ impl SvgPiece {
 
 /// A closed line of at least two vertices: one that has a single curve is divided.
 fn whole(mut line: DrawnLine) -> DrawnLine {
-    if let (true, 1, Way::Cubic([a, b])) = (line.is_closed, line.len(), line.way(0)) {
+    if let (true, 1, Span::Cubic([a, b])) = (line.is_closed, line.len(), line.span(0)) {
         let p = line.in_size(0)[0];
         // De Casteljau's division at the middle.
         let half = |a: Vec2, b: Vec2| (a + b) * 0.5;
@@ -127,18 +129,18 @@ fn whole(mut line: DrawnLine) -> DrawnLine {
         let [left, right] = [half(pa, ab), half(ab, bp)];
         let middle = half(left, right);
         line.by_size[0].push(middle);
-        line.ways = vec![Way::Cubic([pa, left]), Way::Cubic([right, bp])];
+        line.spans = vec![Span::Cubic([pa, left]), Span::Cubic([right, bp])];
     }
     line
 }
 
-/// Takes straight ways in a row that turn a little at each vertex for the chords of a curve.
+/// Takes straight spans in a row that turn a little at each vertex for the chords of a curve.
 fn told_curves(line: &mut DrawnLine) {
     let count = line.len();
     let points = line.in_size(0);
     let is_smooth = |k: usize| {
         let before = (k + count - 1) % count;
-        let is_straight = |k: usize| line.way(k) == Way::Straight;
+        let is_straight = |k: usize| line.span(k) == Span::Straight;
         let is_inner = line.is_closed || k > 0 && k + 1 < count;
         let (a, b) = (
             points[k] - points[before],
@@ -149,11 +151,11 @@ fn told_curves(line: &mut DrawnLine) {
         is_inner && is_straight(before) && is_straight(k) && is_turn
     };
     let smooth: Vec<bool> = (0..count).map(is_smooth).collect();
-    line.ways.resize(count, Way::Straight);
+    line.spans.resize(count, Span::Straight);
     // Runs are counted from a vertex that is no part of one; a line without such is a curve all round.
     let Some(start) = smooth.iter().position(|smooth| !smooth) else {
         if count > MIN_TURNS {
-            line.ways.fill(Way::Chord);
+            line.spans.fill(Span::Chord);
         }
         return;
     };
@@ -163,7 +165,7 @@ fn told_curves(line: &mut DrawnLine) {
         let run = rest.count();
         if run >= MIN_TURNS {
             for way in k - 1..k + run {
-                line.ways[way % count] = Way::Chord;
+                line.spans[way % count] = Span::Chord;
             }
         }
         k += run + 1;
@@ -180,7 +182,7 @@ fn stretch(outline: &DrawnLine, [a, b]: [Vec2; 2]) -> Option<[usize; 2]> {
     let off = |p: Vec2| (along.perp(&(p - a)) / length).abs();
     let is_on = |k: usize| {
         let ends = [points[k % count], points[(k + 1) % count]];
-        !matches!(outline.way(k % count), Way::Cubic(_))
+        !matches!(outline.span(k % count), Span::Cubic(_))
             && ends.iter().all(|&end| off(end) <= ON_VERTEX)
     };
     let middle = (a + b) * 0.5;
@@ -206,8 +208,8 @@ fn folded(outline: &mut DrawnLine, ends: [Vec2; 2]) -> Option<[Vec2; 2]> {
     let found = [from, to].map(|k| outline.in_size(0)[k % count]);
     let inner: Vec<usize> = (from + 1..to).map(|k| k % count).collect();
     let mut k = 0;
-    outline.ways.resize(count, Way::Straight);
-    outline.ways.retain(|_| {
+    outline.spans.resize(count, Span::Straight);
+    outline.spans.retain(|_| {
         k += 1;
         !inner.contains(&(k - 1))
     });

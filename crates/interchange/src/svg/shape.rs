@@ -1,7 +1,7 @@
-//! Shapes of elements as lines of straight and cubic ways, in units of the element.
+//! Shapes of elements as lines of straight and cubic spans, in units of the element.
 
 use super::viewport::{Axis, Viewport, length};
-use crate::drawn::piece::{DrawnLine, Way};
+use crate::drawn::piece::{DrawnLine, Span};
 use kurbo::{Affine, Arc, PathEl, Point, SvgArc};
 use roxmltree::Node;
 use svgtypes::{PathParser, PathSegment, PointsParser};
@@ -92,7 +92,7 @@ pub(super) fn placed(line: &DrawnLine, by: Affine) -> DrawnLine {
 struct Pen {
     shape: Shape,
     points: Vec<Vec2>,
-    ways: Vec<Way>,
+    spans: Vec<Span>,
     /// Last handle of the way before, if that is a cubic or a quadratic, and which.
     handle: Option<(Vec2, bool)>,
 }
@@ -110,13 +110,13 @@ impl Pen {
 
     fn straight(&mut self, to: Vec2) {
         self.points.push(to);
-        self.ways.push(Way::Straight);
+        self.spans.push(Span::Straight);
         self.handle = None;
     }
 
     fn cubic(&mut self, handles: [Vec2; 2], to: Vec2) {
         self.points.push(to);
-        self.ways.push(Way::Cubic(handles));
+        self.spans.push(Span::Cubic(handles));
         self.handle = Some((handles[1], true));
     }
 
@@ -135,7 +135,7 @@ impl Pen {
         if self.points.len() > 1 && self.at() == first {
             self.points.pop();
         } else {
-            self.ways.push(Way::Straight);
+            self.spans.push(Span::Straight);
         }
         self.put(true);
     }
@@ -146,14 +146,14 @@ impl Pen {
 
     fn put(&mut self, is_closed: bool) {
         let points = std::mem::take(&mut self.points);
-        let ways = std::mem::take(&mut self.ways);
+        let spans = std::mem::take(&mut self.spans);
         self.handle = None;
-        if points.len() > 1 || is_closed && matches!(ways[..], [Way::Cubic(_)]) {
+        if points.len() > 1 || is_closed && matches!(spans[..], [Span::Cubic(_)]) {
             self.shape.lines.push(DrawnLine {
                 by_size: vec![points],
                 is_closed,
-                is_corner: Vec::new(),
-                ways,
+                spans,
+                ..DrawnLine::default()
             });
         }
     }
