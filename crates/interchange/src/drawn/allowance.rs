@@ -13,8 +13,13 @@ const SHARES: [f64; 7] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
 pub(crate) enum Width {
     /// It is even (m).
     Even(f64),
-    /// It differs along the edge; this is its mean (m).
-    Uneven(f64),
+    /// It differs along the edge: its mean, and the difference of its largest and smallest (m).
+    Uneven {
+        /// The mean.
+        mean: f64,
+        /// The difference.
+        spread: f64,
+    },
 }
 
 /// Width of the allowance along an edge of the sew line, given by the vertices of both lines. Both lines run
@@ -29,7 +34,10 @@ pub(crate) fn width(edge: &[Vec2], cut_line: &[Vec2]) -> Width {
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     match high - low <= EVEN {
         true => Width::Even(mean),
-        false => Width::Uneven(mean),
+        false => Width::Uneven {
+            mean,
+            spread: high - low,
+        },
     }
 }
 
@@ -111,7 +119,7 @@ mod tests {
         assert!((width - 0.01).abs() < 1e-12);
         let slanted = [[-0.01, -0.01], [0.31, -0.02], [0.31, 0.31], [-0.01, 0.31]].map(Vec2::from);
         assert!(
-            matches!(super::width(&edge, &slanted), Width::Uneven(mean) if (mean - 0.015).abs() < 1e-4)
+            matches!(super::width(&edge, &slanted), Width::Uneven { mean, spread } if (mean - 0.015).abs() < 1e-4 && spread > 1e-3)
         );
     }
 

@@ -29,6 +29,10 @@ const ON_LINE: f64 = 2e-4;
 const AS_NEAR: f64 = 5e-5;
 /// Longest way from the sew line, or from a corner of it, to a notch on the cut line that belongs to it (m).
 const MAX_REACH: f64 = 0.06;
+/// Difference of the distances along an edge beyond which they may not be a width at all (m).
+const MAX_SPREAD: f64 = 0.003;
+/// Widths differ by as much from round ones as coordinates are rounded in files (m).
+const EXACT: f64 = 2e-5;
 /// Room between pieces that are laid side by side on the table (m).
 const ROOM: f64 = 0.03;
 /// Width of a row of pieces on the table (m).
@@ -352,34 +356,43 @@ impl Builder {
         let vertices = &chords.points;
         let count = vertices.len();
         let corners: Vec<usize> = built.corners.iter().map(|&k| chords.starts[k]).collect();
-        let mut uneven = 0;
-        let widths: Vec<f64> = corners
+        let found: Vec<(Width, f64)> = corners
             .iter()
             .enumerate()
             .map(|(c, &from)| {
                 let next = corners[(c + 1) % corners.len()];
                 let to = if next > from { next } else { next + count };
                 let edge: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
-                match width(&edge, cut_line) {
-                    Width::Even(width) => rounded(width),
-                    Width::Uneven(mean) => {
-                        uneven += 1;
-                        rounded(mean)
-                    }
-                }
+                let ways = edge.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+                (width(&edge, cut_line), ways.sum())
             })
             .collect();
+        let even = found.iter().filter_map(|&(found, length)| match found {
+            Width::Even(width) => Some((rounded(width), length)),
+            Width::Uneven { .. } => None,
+        });
+        let usual = longest(&even.collect::<Vec<(f64, f64)>>());
+        let uneven = found
+            .iter()
+            .filter(|(found, _)| matches!(found, Width::Uneven { .. }))
+            .count();
+        let taken = |found: Width| match found {
+            Width::Even(width) => rounded(width),
+            // The legs of a dart that is drawn lie at no distance of their own from the cut line.
+            Width::Uneven { mean, spread } if spread > MAX_SPREAD && mean > 2.0 * usual => usual,
+            Width::Uneven { mean, .. } => rounded(mean),
+        };
+        let widths: Vec<f64> = found.into_iter().map(|(found, _)| taken(found)).collect();
         if uneven > 0 {
             self.losses.push(Loss {
                 count: uneven,
                 ..Loss::at(
                     name,
                     "seam allowances of uneven width",
-                    "their mean width is taken",
+                    "their mean width is taken, or the usual one of the piece where that is beyond all measure",
                 )
             });
         }
-        let usual = most_common(&widths);
         drawing.panel.allowance = usual.into();
         for (edge, width) in built.edges.iter_mut().zip(widths) {
             edge.allowance = (width != usual).then(|| width.into());
@@ -496,18 +509,26 @@ fn length_between(ring: &[Vec2], from: f64, to: f64) -> f64 {
     length
 }
 
-/// A width rounded to a thousandth of a millimetre.
+/// A width rounded to a tenth of a millimetre where it is as near to one as coordinates are exact, else to a
+/// thousandth.
 fn rounded(width: f64) -> f64 {
-    (width * 1e6).round() / 1e6
+    let tenth = (width * 1e4).round() / 1e4;
+    match (width - tenth).abs() <= EXACT {
+        true => tenth,
+        false => (width * 1e6).round() / 1e6,
+    }
 }
 
-/// The value that occurs most often, the first of equals; 0 without values.
-fn most_common(values: &[f64]) -> f64 {
-    let count = |value: f64| values.iter().filter(|&&other| other == value).count();
-    let mut best = (0, 0.0);
-    for &value in values {
-        if count(value) > best.0 {
-            best = (count(value), value);
+/// The value other than 0 that most of a line has, by values with lengths, the first of equals; 0 without one.
+fn longest(values: &[(f64, f64)]) -> f64 {
+    let length = |value: f64| {
+        let own = values.iter().filter(|(other, _)| *other == value);
+        own.map(|(_, length)| length).sum::<f64>()
+    };
+    let mut best = (0.0, 0.0);
+    for &(value, _) in values.iter().filter(|(value, _)| *value != 0.0) {
+        if length(value) > best.0 {
+            best = (length(value), value);
         }
     }
     best.1
