@@ -210,10 +210,13 @@ impl DrawnLine {
             }
         }
         if !self.ways.is_empty() {
-            self.ways.resize(count, Way::Chord);
-            // The way that goes is the one before the vertex.
-            let mut stays = (0..count).map(|k| !gone[(k + 1) % count]);
-            self.ways.retain(|_| stays.next().unwrap_or(true));
+            // A vertex that stays goes on the way of the last one that lies on it.
+            let on = |k: usize| {
+                let gone_after = (1..count).take_while(|step| gone[(k + step) % count]);
+                self.way((k + gone_after.count()) % count)
+            };
+            let stay = (0..count).filter(|&k| !gone[k]);
+            self.ways = stay.map(on).collect();
         }
         let mut kept = gone.iter().map(|gone| !gone).cycle();
         for points in &mut self.by_size {
@@ -281,5 +284,13 @@ mod tests {
         assert_eq!(chords.starts, [0, 1, 1 + MAX_CHORDS]);
         turned.reverse();
         assert_eq!(turned, line);
+        // The last vertex lies on the first one.
+        let mut line = DrawnLine {
+            ways: vec![Way::Cubic(handles), Way::Straight, Way::Straight],
+            ..DrawnLine::one(vec![at(0.0, 0.0), at(1.0, 0.0), at(0.0, 0.0)], true)
+        };
+        line.drop_repeats(1e-9);
+        assert_eq!(line.in_size(0), [at(1.0, 0.0), at(0.0, 0.0)]);
+        assert_eq!(line.ways, [Way::Straight, Way::Cubic(handles)]);
     }
 }

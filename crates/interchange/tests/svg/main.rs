@@ -4,7 +4,6 @@
 mod back;
 mod damaged;
 mod drawings;
-mod dump;
 mod freesewing;
 #[path = "../random_pattern/mod.rs"]
 mod random_pattern;
