@@ -239,8 +239,13 @@ impl DrawnLine {
         let count = self.len();
         if !self.spans.is_empty() {
             self.spans.resize(count, Span::Chord);
-            let mut stays = (0..count).map(|k| !is_gone[(k + 1) % count]);
-            self.spans.retain(|_| stays.next().unwrap_or(true));
+            // A vertex that stays goes on by the span of the last one that is gone after it.
+            let on = |k: usize| {
+                let gone_after = (1..count).take_while(|step| is_gone[(k + step) % count]);
+                self.span((k + gone_after.count()) % count)
+            };
+            let stay = (0..count).filter(|&k| !is_gone[k]);
+            self.spans = stay.map(on).collect();
         }
         for stretches in &mut self.between {
             let mut kept: Vec<Vec<Vec2>> = Vec::new();
@@ -351,5 +356,13 @@ mod tests {
         assert_eq!(chords.starts, [0, 1, 1 + MAX_CHORDS]);
         turned.reverse();
         assert_eq!(turned, line);
+        // The last vertex lies on the first one.
+        let mut line = DrawnLine {
+            spans: vec![Span::Cubic(handles), Span::Straight, Span::Straight],
+            ..DrawnLine::one(vec![at(0.0, 0.0), at(1.0, 0.0), at(0.0, 0.0)], true)
+        };
+        line.drop_repeats(1e-9);
+        assert_eq!(line.in_size(0), [at(1.0, 0.0), at(0.0, 0.0)]);
+        assert_eq!(line.spans, [Span::Straight, Span::Cubic(handles)]);
     }
 }

@@ -72,9 +72,12 @@ fn has_curve(line: &DrawnLine) -> bool {
 /// Appends a line that begins at the end of another.
 pub(super) fn append(line: &mut DrawnLine, next: DrawnLine) {
     let count = line.len();
-    line.spans.resize(count.saturating_sub(1), Span::Straight);
-    line.spans.extend(next.spans);
     let points = next.by_size.into_iter().next().unwrap_or_default();
+    // An open line has a way less than vertices; one that was turned round may name one more.
+    line.spans.resize(count.saturating_sub(1), Span::Straight);
+    let mut spans = next.spans;
+    spans.resize(points.len().saturating_sub(1), Span::Straight);
+    line.spans.extend(spans);
     line.by_size[0].extend(points.into_iter().skip(1));
 }
 
@@ -109,6 +112,16 @@ mod tests {
         assert!(found[0].is_closed);
         assert!((found[0].area(0) - whole[0].area(0)).abs() < 1e-12);
         assert_eq!(found[0].spans.len(), found[0].len());
+    }
+
+    #[test]
+    fn curves_stay_theirs_where_lines_are_turned_round() {
+        let whole = lines("M0 0L2 0C2 1 1 2 0 2C-1 2 -2 1 -2 0Z");
+        let parts = "M2 0L0 0M-2 0C-2 1 -1 2 0 2M2 0C2 1 1 2 0 2M0 0L-2 0";
+        let found = joined(lines(parts), 1e-6);
+        assert!(found.len() == 1 && found[0].is_closed);
+        let [a, b] = [&whole[0], &found[0]].map(|line| line.area(0).abs());
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
 
     #[test]

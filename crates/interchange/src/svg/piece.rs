@@ -4,7 +4,7 @@ use crate::Loss;
 use crate::drawn::builder::ON_VERTEX;
 use crate::drawn::inset::inset;
 use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPiece, Span};
-use toile_geometry::{Vec2, ring_area};
+use toile_geometry::{Vec2, closest_on_segment, ring_area};
 use toile_pattern::{Cut, NotchKind};
 
 /// Vertices that lie nearer to the one before are repeats (m).
@@ -13,6 +13,12 @@ const REPEAT: f64 = 1e-7;
 const MAX_TURN: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 /// Least number of such turns in a row.
 const MIN_TURNS: usize = 4;
+/// Largest ratio of the lengths of two chords of a curve that follow one another.
+const MAX_RATIO: f64 = 3.0;
+/// Shortest handle of a curve (m).
+const HANDLE: f64 = 1e-6;
+/// Largest distance of a notch from the fold that it marks (m).
+const ON_FOLD: f64 = 1e-3;
 
 /// A piece, in units of the file, y down.
 #[derive(Clone, Debug, Default)]
@@ -52,6 +58,7 @@ impl SvgPiece {
             let mut line = line.mapped(place);
             line.drop_repeats(REPEAT);
             told_curves(&mut line);
+            free_handles(&mut line);
             line
         };
         let cut = self.cut.as_ref().map(line);
@@ -73,7 +80,14 @@ impl SvgPiece {
             (None, None) => (DrawnLine::default(), None),
         };
         let mut outline = whole(outline);
-        let fold = fold.map(|ends| folded(&mut outline, ends).unwrap_or(ends));
+        let on_outline = fold.and_then(|ends| folded(&mut outline, ends));
+        let is_on_fold = |at: Vec2| {
+            on_outline.is_some_and(|ends| {
+                let place = closest_on_segment(at, ends);
+                let is_end = ends.iter().any(|end| (at - end).norm() <= ON_FOLD);
+                (place - at).norm() <= ON_FOLD && !is_end
+            })
+        };
         if outline.area(0) < 0.0 {
             outline.reverse();
         }
@@ -95,6 +109,19 @@ impl SvgPiece {
             });
             all.filter(|line| line.len() >= least).collect()
         };
+        let notches: Vec<DrawnNotch> = self.notches.iter().map(notch).collect();
+        let (on_fold, notches): (Vec<DrawnNotch>, Vec<DrawnNotch>) =
+            notches.into_iter().partition(|notch| is_on_fold(notch.at));
+        if !on_fold.is_empty() {
+            losses.push(Loss {
+                count: on_fold.len(),
+                ..Loss::at(
+                    &self.name,
+                    "notches on the fold",
+                    "the unfolded piece has no edge there",
+                )
+            });
+        }
         let piece = DrawnPiece {
             name: self.name.clone(),
             fabric: None,
@@ -105,7 +132,7 @@ impl SvgPiece {
             drills: Vec::new(),
             holes: inner(&self.holes, 2),
             inside: inner(&self.inside, 2),
-            notches: self.notches.iter().map(notch).collect(),
+            notches,
             grain: self.grain.map(|ends| {
                 // A grain line has no sense: it is taken to run upwards.
                 let [a, b] = ends.map(place);
@@ -113,9 +140,26 @@ impl SvgPiece {
                 let angle = along.y.atan2(along.x).rem_euclid(std::f64::consts::PI);
                 (angle * 1e9).round() / 1e9
             }),
-            fold,
+            fold: on_outline.or(fold),
         };
         (piece, losses)
+    }
+}
+
+/// Moves handles that lie on their vertices off them, so that the curves have a direction there.
+fn free_handles(line: &mut DrawnLine) {
+    let points = line.in_size(0).to_vec();
+    for (k, way) in line.spans.iter_mut().enumerate() {
+        let Span::Cubic([a, b]) = way else { continue };
+        let (from, to) = (points[k], points[(k + 1) % points.len()]);
+        let off = |end: Vec2, handle: Vec2, others: [Vec2; 2]| {
+            let mut ways = others.into_iter().map(|other| other - end);
+            let way = ways.find(|way| way.norm() > HANDLE)?;
+            ((handle - end).norm() < HANDLE).then(|| end + way.normalize() * HANDLE)
+        };
+        let moved = [off(from, *a, [*b, to]), off(to, *b, [*a, from])];
+        *a = moved[0].unwrap_or(*a);
+        *b = moved[1].unwrap_or(*b);
     }
 }
 
@@ -147,7 +191,9 @@ fn told_curves(line: &mut DrawnLine) {
             points[(k + 1) % count] - points[k],
         );
         let turn = a.perp(&b).atan2(a.dot(&b)).abs();
-        let is_turn = turn <= MAX_TURN && turn > 1e-3;
+        let ratio = a.norm() / b.norm();
+        let is_even = (1.0 / MAX_RATIO..=MAX_RATIO).contains(&ratio);
+        let is_turn = turn <= MAX_TURN && turn > 1e-3 && is_even;
         is_inner && is_straight(before) && is_straight(k) && is_turn
     };
     let smooth: Vec<bool> = (0..count).map(is_smooth).collect();
