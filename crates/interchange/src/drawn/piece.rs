@@ -110,7 +110,7 @@ impl DrawnLine {
         self.ways.get(vertex).copied().unwrap_or_default()
     }
 
-    /// Its chords in a size, the curves cut into equal steps.
+    /// Chords along the line in a size, the curves cut into equal steps.
     pub fn chords(&self, size: usize) -> Chords {
         let vertices = self.in_size(size);
         let is_cubic = |way: &&Way| matches!(way, Way::Cubic(_));
