@@ -139,7 +139,7 @@ impl DrawnLine {
         own.map_or(&[], Vec::as_slice)
     }
 
-    /// Its chords in a size, the curves cut into equal steps.
+    /// Chords along the line in a size, the curves cut into equal steps.
     pub fn chords(&self, size: usize) -> Chords {
         let vertices = self.in_size(size);
         let is_cubic = |way: &&Span| matches!(way, Span::Cubic(_));

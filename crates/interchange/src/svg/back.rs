@@ -20,7 +20,7 @@ use toile_pattern::{Panel, PanelId, Pattern};
 /// Ways that are shorter are no move (mm).
 const STAYS: f64 = 0.01;
 
-/// What the metadata of a file of this program hold.
+/// The contents of the metadata in a file of this program.
 #[derive(Debug)]
 pub(super) struct Written {
     file: PatternFile,
@@ -35,7 +35,7 @@ struct WrittenPanel {
     lines: Outlines,
 }
 
-/// What became of a panel in the drawing.
+/// The fate of a panel in the drawing.
 enum Found {
     /// It is as it was written, moved by a way (mm, y down).
     AsWritten(Vec2),
@@ -45,7 +45,7 @@ enum Found {
     Gone,
 }
 
-/// What this program wrote into the metadata; `None` for files of others.
+/// Reads the contents that this program wrote into the metadata; `None` for files of others.
 ///
 /// # Errors
 /// The document there is damaged: its fault, place and remedy.
@@ -206,7 +206,7 @@ pub(super) fn read(
     })
 }
 
-/// What became of a panel, and the group that shows it.
+/// The fate of a panel, and the group that shows it.
 fn found(
     drawing: &Drawing,
     (panel, unit): (&WrittenPanel, f64),
@@ -236,7 +236,7 @@ fn found(
     }
 }
 
-/// What is drawn in none of the groups of panels.
+/// The lines and words that stand in none of the groups of panels.
 fn beside(drawing: &Drawing, groups: &[usize]) -> Drawing {
     let mut rest = drawing.clone();
     let is_free = |group: usize| !groups.iter().any(|&own| drawing.is_within(group, own));

@@ -5,7 +5,7 @@ use crate::drawn::piece::DrawnLine;
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;
 
-/// What is drawn in a file.
+/// Everything that is drawn in a file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drawing {
     /// Groups; the first one is the whole drawing. Those within a group come after it.
@@ -27,9 +27,9 @@ pub(super) struct Drawing {
 pub(super) struct Group {
     /// The group that it stands in.
     pub parent: Option<usize>,
-    /// Its identifier in the file.
+    /// The identifier in the file.
     pub id: String,
-    /// Its label, if it has one.
+    /// The label, if there is one.
     pub label: Option<String>,
     /// Whether it is a layer.
     pub is_layer: bool,
@@ -42,11 +42,11 @@ pub(super) struct Group {
 pub(super) struct Element {
     /// The group that it stands in.
     pub group: usize,
-    /// Its identifier in the file.
+    /// The identifier in the file.
     pub id: String,
-    /// Its label or title, if it has one.
+    /// The label or title, if there is one.
     pub label: Option<String>,
-    /// Its classes.
+    /// The classes.
     pub classes: Vec<String>,
     /// The marker at its start.
     pub marker: String,
@@ -61,7 +61,7 @@ pub(super) struct Element {
 pub(super) struct Line {
     /// The element that draws it.
     pub element: usize,
-    /// Its shape.
+    /// The shape.
     pub shape: DrawnLine,
 }
 
@@ -81,9 +81,9 @@ pub(super) struct Text {
 pub(super) struct Sign {
     /// The group that it stands in.
     pub group: usize,
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its place.
+    /// The place.
     pub at: Vec2,
 }
 

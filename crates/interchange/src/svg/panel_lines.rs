@@ -11,7 +11,7 @@ use toile_pattern::{Piece, PieceEdge};
 pub(super) struct PanelPath {
     /// The kind of its lines.
     pub kind: LineKind,
-    /// Its description.
+    /// The description of the path.
     pub description: String,
 }
 

@@ -111,7 +111,7 @@ fn nothing(drawing: &Drawing) -> FormatError {
     }
 }
 
-/// What the drawing holds that is no line of a pattern.
+/// Losses of elements that are no lines of a pattern.
 fn left_out(drawing: &Drawing) -> Vec<Loss> {
     let all = drawing.left_out.iter();
     let why = |what: &str| match what {

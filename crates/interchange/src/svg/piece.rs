@@ -23,7 +23,7 @@ const ON_FOLD: f64 = 1e-3;
 /// A piece, in units of the file, y down.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SvgPiece {
-    /// Its name.
+    /// The name.
     pub name: String,
     /// The line that is sewn, closed, if it is told from the cut line.
     pub sew: Option<DrawnLine>,

@@ -299,7 +299,7 @@ fn is_given(id: &str) -> bool {
     !counted.contains(&letters)
 }
 
-/// What a line is by its names: its grain or its fold.
+/// Tells a line of the grain and one on the fold by its names.
 fn told_as(drawing: &Drawing, line: &Own) -> Option<&'static str> {
     let element = &drawing.elements[line.element];
     let group = &drawing.groups[line.group];

@@ -15,7 +15,7 @@ pub(crate) struct SvgReading {
     pub notes: Vec<String>,
 }
 
-/// What is taken for the sew line of pieces that have none.
+/// The guess about the sew line of pieces that have none.
 pub(super) fn sew_line_guess(pieces: &[SvgPiece], options: &ReadOptions) -> Option<Guess> {
     let without = pieces.iter().filter(|piece| piece.sew.is_none()).count();
     (without > 0 && options.allowance_inside.is_none()).then(|| Guess {

@@ -9,7 +9,7 @@ const MAX_RING: usize = 2_000;
 /// Largest number of places of a line that are looked at.
 const MAX_PLACES: usize = 64;
 
-/// What a closed line encloses.
+/// The area that a closed line encloses.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     polygon: Polygon,

@@ -14,7 +14,7 @@ use toile_pattern::fields::Choice;
 const PIECE_SIZES: [f64; 2] = [0.2, 2.5];
 const INCH: f64 = 0.0254;
 
-/// What a file says of the size of its units.
+/// Statements of a file about the size of its units.
 #[derive(Clone, Debug)]
 pub(super) struct Scale {
     /// The size of a unit (m), if the file states it.
@@ -30,7 +30,7 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// What the root element says.
+    /// Reads the statements of the root element.
     ///
     /// # Errors
     /// A view box without an area, in which nothing is drawn.

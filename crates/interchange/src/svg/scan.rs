@@ -96,7 +96,7 @@ struct Scanner<'x, 'd, 's> {
     points: usize,
 }
 
-/// Where elements are drawn.
+/// The place at which elements are drawn.
 #[derive(Clone, Debug)]
 struct Place {
     /// From units of the elements to those of the drawing.

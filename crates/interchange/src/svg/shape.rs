@@ -181,7 +181,7 @@ impl Pen {
             sweep_angle: std::f64::consts::TAU,
             x_rotation: 0.0,
         });
-        // Its end is its start but for rounding.
+        // The end is the start but for rounding.
         if let Some(&first) = self.points.first()
             && let Some(last) = self.points.last_mut()
         {
@@ -251,7 +251,7 @@ impl Pen {
     }
 
     fn path(&mut self, text: &str) {
-        // Where a line begins that is drawn on without a move after it is closed.
+        // The start of a line that is drawn on without a move after it is closed.
         let mut first = Vec2::zeros();
         for segment in PathParser::from(text) {
             let Ok(segment) = segment else {

@@ -1,4 +1,4 @@
-//! What is drawn and what is hidden: by attributes, styles and style sheets.
+//! Tells what is drawn from what is hidden: by attributes, styles and style sheets.
 
 use crate::FormatError;
 use roxmltree::Node;

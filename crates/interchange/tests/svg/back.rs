@@ -225,7 +225,7 @@ fn random_patterns_come_back_whole_and_one_panel_edited() {
             continue;
         }
         written += 1;
-        // What the native format itself makes of it is what comes back.
+        // The native format itself makes the same of it.
         let native = toile_interchange::write_pattern(&pattern).unwrap();
         let expected = read_pattern(&native).unwrap().0;
         let reading = read(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
