@@ -57,6 +57,8 @@ pub enum FileKind {
     MarkerSettings,
     /// A nesting instance of jagua-rs.
     NestingInstance,
+    /// A grade rule table of a DXF.
+    RuleTable,
     /// A scene.
     Scene,
     /// A report of a run.
@@ -98,6 +100,7 @@ impl FileKind {
             Self::Marker => "a marker",
             Self::MarkerSettings => "a file of marker settings",
             Self::NestingInstance => "a nesting instance",
+            Self::RuleTable => "a grade rule table (RUL)",
             Self::Scene => "a scene",
             Self::Report => "a report",
             Self::Journal => "a journal",

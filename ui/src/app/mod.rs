@@ -31,6 +31,7 @@ mod file_choice;
 mod files;
 mod findings;
 mod garment_pane;
+mod grading;
 mod job;
 mod layout;
 mod marker_cloth;

@@ -1,11 +1,12 @@
 //! Makes a document of drawn pieces.
 //!
-//! Every vertex becomes a point of the sheet with its place in each size; vertices between two corners become
-//! one edge, straight or a spline through them. Edges of the sew line get the allowance that their distance to
-//! the cut line shows.
+//! Every vertex becomes a point of the sheet; vertices between two corners become one edge, straight or a spline
+//! through them. Corners grade by rules, points between them with their corners ([`crate::drawn::graded`]). Edges
+//! of the sew line get the allowance that their distance to the cut line shows.
 
 use super::allowance::{Width, nearest, width};
 use super::corners::{corners, is_straight};
+use super::graded::{Rules, SizedPlaces};
 use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece};
 use super::spline;
 use crate::Loss;
@@ -14,11 +15,11 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2, ring_area};
 use toile_pattern::{
-    CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number, Operation,
-    OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
+    CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Operation, OperationKind,
+    PanelBuilder, Pattern, PointId, Size, SizeId,
 };
 
-/// Coordinates of two sizes that differ by less are one (m).
+/// Shares of an edge in two sizes that differ by less are one (1).
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
 const ON_VERTEX: f64 = 2e-4;
@@ -52,18 +53,22 @@ pub(crate) fn document(drawn: &DrawnPattern) -> (Pattern, Vec<Loss>) {
     pattern.base_size = sizes.get(drawn.base).copied();
     let mut builder = Builder {
         pattern,
+        rules: Rules::new(&sizes, drawn.base, &drawn.rules),
         sizes,
         base: drawn.base,
         names: BTreeSet::new(),
         losses: Vec::new(),
     };
     drawn.pieces.iter().for_each(|piece| builder.piece(piece));
+    let variables = builder.rules.variables.drain(..).map(Arc::new);
+    builder.pattern.variables.extend(variables);
     lay_out(&mut builder.pattern, &drawn.pieces, drawn.base);
     (builder.pattern, builder.losses)
 }
 
 struct Builder {
     pattern: Pattern,
+    rules: Rules,
     sizes: Vec<SizeId>,
     base: usize,
     /// Names of panels that are taken.
@@ -196,31 +201,6 @@ impl Builder {
         self.pattern.add(drawn);
     }
 
-    /// A number with its values in all sizes.
-    fn number(&self, values: impl Fn(usize) -> f64) -> Number {
-        let usual = values(self.base);
-        let others = self.sizes.iter().enumerate();
-        let others = others.filter(|&(k, _)| k != self.base);
-        let differing: Vec<(SizeId, f64)> = others
-            .map(|(k, &size)| (size, values(k)))
-            .filter(|(_, value)| (value - usual).abs() > SAME)
-            .collect();
-        match differing.is_empty() {
-            true => usual.into(),
-            false => Number::PerSize {
-                usual: Box::new(usual.into()),
-                sizes: differing,
-            },
-        }
-    }
-
-    fn rule(&self, at: impl Fn(usize) -> Vec2) -> PointRule {
-        PointRule::At {
-            x: self.number(|size| at(size).x),
-            y: self.number(|size| at(size).y),
-        }
-    }
-
     /// Adds the points and curves of a line; `further` are vertices that must be corners.
     fn line(
         &mut self,
@@ -232,15 +212,27 @@ impl Builder {
         let corners = corners(line, further);
         let count = line.len();
         let at = |k: usize, size: usize| line.in_size(size)[k % count];
-        let points: Vec<PointId> = (0..count)
-            .map(|k| {
-                numbers.points += 1;
-                drawing.point(
-                    format!("p{}", numbers.points),
-                    self.rule(|size| at(k, size)),
-                )
-            })
-            .collect();
+        let place = |k: usize| SizedPlaces::new(&|size| at(k, size), self.sizes.len());
+        let name = |k: usize| format!("p{}", numbers.points + k + 1);
+        let mut points: Vec<PointId> = vec![PointId::default(); count];
+        for &k in &corners {
+            let rule = self.rules.corner(drawing, &place(k));
+            points[k] = drawing.point(name(k), rule);
+        }
+        for (c, &from) in corners.iter().enumerate() {
+            let to = match corners.get(c + 1) {
+                Some(&next) => next,
+                None if line.is_closed => corners[0] + count,
+                None => continue,
+            };
+            let ends = [from, to % count];
+            let frame = self.rules.frame(ends.map(|k| points[k]), &ends.map(&place));
+            for k in from + 1..to {
+                let k = k % count;
+                points[k] = drawing.point(name(k), self.rules.between(&frame, &place(k)));
+            }
+        }
+        numbers.points += count;
         let last = corners.len() - usize::from(!line.is_closed);
         let mut edges = Vec::new();
         for (c, &from) in corners.iter().enumerate().take(last) {
@@ -285,9 +277,16 @@ impl Builder {
             }
             all.push(handles);
         }
+        let ends = [from, to];
+        let places = ends.map(|k| SizedPlaces::new(&|size| at(k, size), self.sizes.len()));
+        let frame = self
+            .rules
+            .frame(ends.map(|k| points[k % points.len()]), &places);
         let mut handle = |segment: usize, end: usize| {
             numbers.handles += 1;
-            let rule = self.rule(|size| all[size.min(sizes - 1)][segment][end]);
+            let at = |size: usize| all[size.min(sizes - 1)][segment][end];
+            let place = SizedPlaces::new(&at, self.sizes.len());
+            let rule = self.rules.between(&frame, &place);
             drawing.point(format!("h{}", numbers.handles), rule)
         };
         let segments = to - from;
@@ -421,7 +420,7 @@ impl Builder {
             length(from_place, along) / length(from_place, to_place).max(f64::MIN_POSITIVE)
         };
         let ends = [points[from], points[to % count]];
-        Some(Mark::between(ends, self.number(share)))
+        Some(Mark::between(ends, self.rules.number(SAME, share)))
     }
 }
 

@@ -8,12 +8,14 @@
 //! - [`crate::drawn::corners`], [`crate::drawn::spline`]: corners of a line, and curves between them;
 //! - [`crate::drawn::allowance`]: seam allowances, from the distance of two lines;
 //! - [`crate::drawn::inset`]: a sew line inside a cut line;
+//! - [`crate::drawn::graded`]: points that follow sizes;
 //! - [`crate::drawn::builder`]: the document.
 
 pub(crate) mod allowance;
 pub(crate) mod builder;
 pub(crate) mod chain;
 pub(crate) mod corners;
+pub(crate) mod graded;
 pub(crate) mod inset;
 pub(crate) mod piece;
 pub(crate) mod spline;

@@ -90,6 +90,8 @@ pub(super) struct BlockPiece {
     pub cutouts: Vec<BlockLine>,
     pub mirror: Vec<BlockLine>,
     pub grain: Vec<BlockLine>,
+    /// Axes that the shifts of grade rules run along.
+    pub axes: Vec<BlockLine>,
     pub turn_points: Vec<Vec2>,
     /// Notches with their shape.
     pub notches: Vec<(Vec2, NotchKind)>,
@@ -104,7 +106,7 @@ pub(super) struct BlockPiece {
     pub depths: usize,
     /// Number of cut lines that are not closed.
     pub open_cuts: usize,
-    /// Number of lines on layers of grading, stripes, plaids and annotation.
+    /// Number of lines on layers of stripes, plaids and annotation.
     pub references: usize,
     /// Number of lines and points on layers of no standard.
     pub others: usize,
@@ -170,7 +172,8 @@ impl BlockPiece {
                 Layer::Cutout => piece.cutouts.extend(found),
                 Layer::Mirror => piece.mirror.extend(found),
                 Layer::Grain => piece.grain.extend(found),
-                Layer::GradeReference | Layer::Annotation => piece.references += found.count(),
+                Layer::GradeReference => piece.axes.extend(found),
+                Layer::Annotation => piece.references += found.count(),
                 Layer::TurnPoints
                 | Layer::CurvePoints
                 | Layer::Notches(_)

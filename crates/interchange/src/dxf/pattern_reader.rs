@@ -4,16 +4,18 @@
 //! vertices, and take them by number.
 
 use super::block_piece::{BlockLine, BlockPiece, Layer};
-use super::drawing::{Block, Drawn, DxfDrawing, Insert};
+use super::drawing::{Block, Drawn, DxfDrawing};
 use super::labels::Labels;
 use super::outlines::split;
+use super::placed::moved;
 use super::sizes::sizes;
+use super::with_table::{Units, with_table};
 use crate::drawn::allowance::{distance, is_evenly_inside};
 use crate::drawn::builder::document;
 use crate::drawn::inset::inset;
 use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece};
 use crate::drawn::unit::unit;
-use crate::{Format, FormatError, Guess, Loss, ReadOptions};
+use crate::{Companion, Format, FormatError, Guess, Loss, ReadOptions};
 use std::collections::BTreeMap;
 use toile_geometry::{Bounds2, Vec2, ring_area};
 use toile_pattern::{Cut, DisplayUnit, NotchKind, Pattern};
@@ -33,11 +35,16 @@ pub(crate) struct DxfReading {
     pub losses: Vec<Loss>,
 }
 
-/// Reads a pattern.
+/// Reads a pattern, with the grade rule table among its companions if there is one.
 ///
 /// # Errors
-/// A damaged file, or one without a closed line: the fault, its place and a remedy.
-pub(crate) fn read_dxf(bytes: &[u8], options: &ReadOptions) -> Result<DxfReading, FormatError> {
+/// A damaged file, or one without a closed line; a companion that is no grade rule table, or one of other sizes:
+/// the fault, its place and a remedy.
+pub(crate) fn read_dxf(
+    bytes: &[u8],
+    options: &ReadOptions,
+    companions: &[Companion],
+) -> Result<DxfReading, FormatError> {
     let drawing = DxfDrawing::read(bytes)?;
     let mut reader = Reader::new(&drawing);
     let pieces = reader.pieces(&drawing)?;
@@ -56,7 +63,12 @@ pub(crate) fn read_dxf(bytes: &[u8], options: &ReadOptions) -> Result<DxfReading
     let (unit, guess) = unit(options.unit, stated, largest(&pieces));
     reader.guesses.extend(guess);
     let is_astm = pieces.iter().any(|piece| piece.has_twins);
-    let mut drawn = reader.drawn(pieces, unit.metres(), options.allowance_inside)?;
+    let units = Units { unit, stated };
+    let sized = with_table(pieces, companions, (&mut reader.style, units))?;
+    reader.guesses.extend(sized.guesses);
+    reader.losses.extend(sized.losses);
+    let mut drawn = reader.drawn(sized.pieces, unit.metres(), options.allowance_inside)?;
+    drawn.rules = sized.rules;
     drawn.name = reader
         .style
         .value(&["stylename", "style"])
@@ -117,35 +129,6 @@ fn notches(
         }
     };
     own.notches.iter().enumerate().map(of).collect()
-}
-
-/// A line placed as an insert says.
-fn placed(p: Vec2, base: Vec2, insert: &Insert) -> Vec2 {
-    let (sin, cos) = insert.turn.sin_cos();
-    let own = p - base;
-    let scaled = Vec2::new(own.x * insert.scale[0], own.y * insert.scale[1]);
-    insert.at
-        + Vec2::new(
-            cos * scaled.x - sin * scaled.y,
-            sin * scaled.x + cos * scaled.y,
-        )
-}
-
-/// A block as its insert places it.
-fn moved(block: &Block, insert: &Insert) -> Block {
-    let mut block = block.clone();
-    let base = block.base;
-    for entity in &mut block.entities {
-        match &mut entity.drawn {
-            Drawn::Line { points, .. } => {
-                points
-                    .iter_mut()
-                    .for_each(|p| *p = placed(*p, base, insert));
-            }
-            Drawn::Point { at, .. } | Drawn::Text { at, .. } => *at = placed(*at, base, insert),
-        }
-    }
-    block
 }
 
 impl Reader {
@@ -556,7 +539,7 @@ impl Reader {
             (
                 own.rules.len(),
                 "numbers of grade rules",
-                "sizes come from the blocks of the file",
+                "rules come from the blocks of sizes, or from a table given with --with",
             ),
             (own.u_notches, "U notches", "read as V notches"),
             (
@@ -565,7 +548,7 @@ impl Reader {
                 "all are cut as deep as this program does",
             ),
             (own.open_cuts, "cut lines", "they are not closed"),
-            (own.references, "reference lines", no_place),
+            (own.references + own.axes.len(), "reference lines", no_place),
             (
                 own.others,
                 "lines and points on layers of no standard",

@@ -28,7 +28,8 @@ pub(super) fn sizes(pieces: &[(String, Vec<BlockPiece>)]) -> Vec<String> {
 fn letter_rank(name: &str) -> Option<f64> {
     let name = name.to_uppercase();
     let (digits, letters) = name.split_at(name.find(|c: char| !c.is_ascii_digit())?);
-    let (xs, last) = letters.split_at(letters.len().checked_sub(1)?);
+    let last = letters.chars().next_back()?;
+    let xs = &letters[..letters.len() - last.len_utf8()];
     if !xs.chars().all(|c| c == 'X') {
         return None;
     }
@@ -38,9 +39,9 @@ fn letter_rank(name: &str) -> Option<f64> {
         Err(_) => xs.len() as f64,
     };
     match last {
-        "S" => Some(-1.0 - times),
-        "M" if times == 0.0 => Some(0.0),
-        "L" => Some(1.0 + times),
+        'S' => Some(-1.0 - times),
+        'M' if times == 0.0 => Some(0.0),
+        'L' => Some(1.0 + times),
         _ => None,
     }
 }
@@ -59,6 +60,7 @@ mod tests {
         assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
         assert_eq!(letter_rank("38"), None);
         assert_eq!(letter_rank("TALL"), None);
+        assert_eq!(letter_rank("XÁ"), None);
         assert_eq!(letter_rank(""), None);
     }
 }
