@@ -4,12 +4,15 @@
 use super::nest::{closed, open};
 use toile_cut::{CutPiece, PieceRing};
 use toile_geometry::{Curve, Vec2};
-use toile_pattern::{Draft, Piece};
+use toile_pattern::{Draft, Piece, PieceEdge};
 
 /// Largest distance of a chord from its curve (m).
 const FLATNESS: f64 = 4e-5;
 /// Largest distance of the chords of a twin from its curve (m).
 const TWIN_FLATNESS: f64 = 8e-6;
+
+/// Largest turn between parts of one spline that run on smoothly (rad).
+const SMOOTH: f64 = 1e-3;
 
 /// A piece in one size.
 pub(super) struct SizedPiece<'d> {
@@ -170,14 +173,16 @@ impl NestPiece {
         };
         for own in sized {
             let (mut points, mut is_corner) = (Vec::new(), Vec::new());
-            for (k, edge) in own.piece.outline.iter().enumerate() {
+            let outline = &own.piece.outline;
+            for (k, edge) in outline.iter().enumerate() {
+                let before = &outline[(k + outline.len() - 1) % outline.len()];
                 let count = match is_alike {
                     true => count(k),
                     false => chords(&edge.curve, tolerance),
                 };
                 points.extend(edge.curve.sample(0.0, 1.0, count));
                 points.pop();
-                is_corner.push(true);
+                is_corner.push(is_corner_between(before, edge));
                 is_corner.resize(points.len(), false);
             }
             line.by_size.push(points);
@@ -211,6 +216,14 @@ impl NestPiece {
             has_rules: is_alike,
         });
     }
+}
+
+/// Whether an outline has a corner between two pieces of it: they are of two edges, or do not run on smoothly. A
+/// spline is several pieces of one edge.
+fn is_corner_between(before: &PieceEdge, after: &PieceEdge) -> bool {
+    let [from, to] = [before.curve.derivative(1.0), after.curve.derivative(0.0)];
+    let turn = from.perp(&to).atan2(from.dot(&to)).abs();
+    before.origin != after.origin || turn > SMOOTH
 }
 
 /// Number of chords at equal shares of a curve's length that stay within a tolerance (m).
