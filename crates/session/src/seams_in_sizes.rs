@@ -27,7 +27,7 @@ pub struct SizedSeam {
     pub lengths_mm: [f64; 2],
     /// Length of the first side beyond the second (mm).
     pub ease_mm: f64,
-    /// That length less the one in the base size (mm); `None` where the base size has no such seam.
+    /// The ease less the one in the base size (mm); `None` where the base size has no such seam.
     pub against_base_mm: Option<f64>,
     /// Length by which one side may be longer than the other (mm); `None` for any, in gathered seams.
     pub allowed_mm: Option<f64>,

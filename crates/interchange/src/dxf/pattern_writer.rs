@@ -45,7 +45,7 @@ pub(crate) struct DxfWriting {
     pub text: String,
     /// The grade rule table (RUL), if there are several sizes.
     pub rules: Option<String>,
-    /// What single pieces lost.
+    /// Contents that single pieces lost.
     pub losses: Vec<Loss>,
 }
 
