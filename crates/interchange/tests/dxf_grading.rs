@@ -199,6 +199,37 @@ fn a_nest_read_written_and_read_again_has_its_corners_and_its_document_stays_sma
     }
 }
 
+#[test]
+fn a_nest_by_rules_equals_the_redrafted_one() {
+    for name in ["t-shirt", "dress"] {
+        let pattern = shipped(name);
+        let sheets: Vec<_> = pattern.sheets.iter().map(|sheet| sheet.id.into()).collect();
+        let evaluation = in_size(&pattern, Some(&pattern.base().unwrap().name));
+        let every = plan::points_of(&evaluation, &sheets);
+        let corners: Vec<PointId> = pattern
+            .panels
+            .iter()
+            .flat_map(|panel| panel.edges().map(|edge| edge.ends[0]))
+            .collect();
+        for points in [every.clone(), corners] {
+            let (edits, count) = plan::rules_of_sizes(&evaluation, &points).unwrap();
+            assert!(count > 4, "{name}: {count}");
+            let mut ruled = pattern.clone();
+            ruled.apply(&edits).unwrap();
+            for size in &pattern.sizes {
+                let [a, b] = [&pattern, &ruled].map(|one| in_size(one, Some(&size.name)));
+                for &id in &every {
+                    let off = (a.point(id).unwrap() - b.point(id).unwrap()).norm();
+                    let bound = if points.contains(&id) { 1e-12 } else { 1e-4 };
+                    assert!(off < bound, "{name}, {}: {off}", size.name);
+                }
+            }
+            let rules = GradeRule::all(&ruled).len();
+            println!("{name}: {count} points by {rules} rules");
+        }
+    }
+}
+
 /// The shifts of a table in millimetres, read plainly: number, then a pair for each size.
 fn shifts_of(table: &str) -> Vec<(u32, Vec<[f64; 2]>)> {
     let mut rules: Vec<(u32, Vec<f64>)> = Vec::new();

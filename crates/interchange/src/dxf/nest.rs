@@ -179,7 +179,7 @@ mod tests {
         let (small, large) = (arc(0.1, 37), arc(0.25, 101));
         let thinned = open(&[&small, &large], 4e-5);
         assert_eq!(thinned[0].len(), thinned[1].len());
-        assert!((8..60).contains(&thinned[0].len()), "{}", thinned[0].len());
+        assert!((8..80).contains(&thinned[0].len()), "{}", thinned[0].len());
         for (line, own) in [(&small, &thinned[0]), (&large, &thinned[1])] {
             assert_eq!((line[0], line.last()), (own[0], own.last()));
             for p in line {
