@@ -1,8 +1,9 @@
-//! Tables under the pattern: measurements by size, variables, wearer and layers, the history.
+//! Tables under the pattern: measurements by size, variables, grade rules, wearer and layers, the history.
 
 mod fabric;
 mod fabric_figures;
 mod fabric_words;
+mod grade_rules;
 mod handle;
 mod history;
 mod line_field;
@@ -66,6 +67,7 @@ impl ToileApp {
             for (tab, name) in [
                 (Tab::Measurements, "Measurements"),
                 (Tab::Variables, "Variables"),
+                (Tab::Grading, "Grading"),
                 (Tab::Fabric, "Fabric"),
                 (Tab::Wearer, "Wearer"),
                 (Tab::WornWith, "Worn with"),
@@ -80,6 +82,7 @@ impl ToileApp {
         match self.tables.tab {
             Tab::Measurements => self.measurement_table(ui),
             Tab::Variables => self.variable_table(ui),
+            Tab::Grading => self.grade_rule_table(ui),
             Tab::Fabric => self.fabric_table(ui),
             Tab::Wearer => self.wearer_table(ui),
             Tab::WornWith => self.worn_with_table(ui),

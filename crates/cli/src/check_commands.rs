@@ -7,8 +7,8 @@ use crate::session_commands::warnings;
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_session::{
-    Choice, Command, Event, Session, Severity, SizeSelection, SizedDiagnostic, is_marker_file,
-    judge_marker_file, piece_facts, seam_facts,
+    Choice, Command, Event, SeamInSizes, Session, Severity, SizeSelection, SizedDiagnostic,
+    is_marker_file, judge_marker_file, piece_facts, seam_facts, seams_in_sizes,
 };
 
 /// One file judged, or several with a verdict each.
@@ -137,6 +137,15 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
         }
         false => (Vec::new(), Vec::new()),
     };
+    let by_size = match (asked, errors) {
+        (Some(sizes), 0) => {
+            seams_in_sizes(project, sizes).map_err(|error| Failure::from(error).about(path))?
+        }
+        _ => Vec::new(),
+    };
+    if !by_size.is_empty() {
+        tell_seams(&by_size, output);
+    }
     let report = json!({
         "format": "toile-check",
         "version": 1,
@@ -148,6 +157,7 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
         "size": project.size_name(),
         "pieces": pieces,
         "seams": seams,
+        "seams_by_size": by_size,
         "diagnostics": listed,
         "warnings": warnings(&events),
     });
@@ -156,6 +166,20 @@ fn pattern(path: &Path, check: &Check, output: &Output) -> Result<Value, Failure
         return Err(Failure::bad_input(message).with_report(report));
     }
     Ok(report)
+}
+
+/// Tells the seams whose ease or notches differ between sizes; those beyond their ease are warned of.
+fn tell_seams(seams: &[SeamInSizes], output: &Output) {
+    let sizes = seams.iter().map(|seam| seam.sizes.len()).max().unwrap_or(0);
+    for words in seams.iter().filter_map(SeamInSizes::uneven) {
+        output.say(words);
+    }
+    let within = seams.iter().filter(|seam| seam.is_within()).count();
+    output.say(format!(
+        "{within} of {} within their ease in {}",
+        count(seams.len(), "seam"),
+        count(sizes, "size")
+    ));
 }
 
 fn count_of(found: &[SizedDiagnostic], severity: Severity) -> usize {

@@ -63,6 +63,8 @@ pub enum FileKind {
     MarkerSettings,
     /// A nesting instance of jagua-rs.
     NestingInstance,
+    /// A grade rule table of a DXF.
+    RuleTable,
     /// A scene.
     Scene,
     /// A report of a run.
@@ -107,6 +109,7 @@ impl FileKind {
             Self::Marker => "a marker",
             Self::MarkerSettings => "a file of marker settings",
             Self::NestingInstance => "a nesting instance",
+            Self::RuleTable => "a grade rule table (RUL)",
             Self::Scene => "a scene",
             Self::Report => "a report",
             Self::Journal => "a journal",

@@ -11,6 +11,7 @@
 //! The compiler asks a new kind for its name, remedy and who takes it. By hand: how it is seen from its first
 //! bytes, XML, JSON or lines; wrong uses in `tests/wrong-uses/table.toml`.
 
+use crate::dxf::is_rule_table;
 use crate::{FileKind, Format, FormatError};
 use serde_json::{Map, Value};
 
@@ -47,6 +48,7 @@ impl FileKind {
             Self::Mannequin => Some("`toile make --body` and `toile body --mannequin` take it"),
             Self::Marker => Some("`toile check` and `toile nest --from` take it"),
             Self::MarkerSettings => Some("`toile nest --settings` takes it"),
+            Self::RuleTable => Some("give the DXF that it belongs to, and this with `--with`"),
             Self::NestingInstance => Some("`toile nest` takes it"),
             Self::Scene => Some("`toile run` takes it"),
             Self::Journal => Some("`toile replay` takes it"),
@@ -104,6 +106,7 @@ impl FileKind {
             | Self::Marker
             | Self::MarkerSettings
             | Self::NestingInstance
+            | Self::RuleTable
             | Self::Scene
             | Self::Report
             | Self::Journal
@@ -330,6 +333,9 @@ fn of_lines(text: &str) -> Option<FileKind> {
     if first == "body:" {
         return Some(FileKind::Measurements);
     }
+    if is_rule_table(text) {
+        return Some(FileKind::RuleTable);
+    }
     if first.starts_with("solid") && text.contains("facet normal") {
         return Some(FileKind::Stl);
     }
@@ -356,7 +362,7 @@ mod tests {
 
     #[test]
     fn files_are_known_by_their_content() {
-        let cases: [(&[u8], FileKind); 28] = [
+        let cases: [(&[u8], FileKind); 29] = [
             (b"  \n", FileKind::Empty),
             (b"\xff\xfe<\0s\0", FileKind::Utf16),
             (b"\x89PNG\r\n\x1a\n", FileKind::Picture),
@@ -388,6 +394,10 @@ mod tests {
             (b"ply\r\nformat ascii 1.0\r\n", FileKind::Ply),
             (b"HIERARCHY\nROOT Hips\n", FileKind::Bvh),
             (b"body:\n  height: 171\n", FileKind::Measurements),
+            (
+                b"version ANSI/AAMA-292-B\r\nSIZE LIST: S M\r\nRULE: DELTA 1\r\n",
+                FileKind::RuleTable,
+            ),
             (br#"{"toile": 1, "kind": "pattern"}"#, FileKind::Pattern),
             (br#"{"pattern": {"panels": {}}}"#, FileKind::GarmentCode),
             (br#"{"format": "toile-marker"}"#, FileKind::Marker),

@@ -14,6 +14,7 @@ mod evaluate;
 mod fabric;
 pub mod fields;
 mod formula;
+mod grade_rule;
 mod ids;
 mod kinks;
 mod mark;
@@ -39,6 +40,7 @@ pub use fabric::Fabric;
 pub use formula::{
     Completion, FORMULA_DEPTH, FORMULA_LENGTH, Formula, FormulaError, Names, Token, is_unit,
 };
+pub use grade_rule::{GradeRule, Graded, MAX_GRADE_RULE};
 pub use ids::*;
 pub use mark::Mark;
 pub use name::*;

@@ -8,11 +8,12 @@
 //!   its own in a size;
 //! - [`crate::plan`] (`moving.rs`, `added`): a drag shifts all sizes;
 //! - [`crate::plan::number_text`], [`crate::plan::read_number`]: numbers shown and typed;
+//! - [`crate::grade_rule`], [`crate::plan`] (`grade.rs`): rules that shift points by size;
 //! - [`crate::plan::add_size`]: sizes added.
 //!
 //! Sizes in the window: `tables.rs` (`FIRST` lists what a new one begins with), `canvas/grading.rs`. Chosen
-//! by crate `session`, `perform.rs`, `project.rs`. There are no grading rules of points: sizes differ by
-//! measurements, or by values of their own.
+//! by crate `session`, `perform.rs`, `project.rs`. Sizes differ by measurements, by values of their own, or by grade
+//! rules, which are variables with values of their own.
 
 use crate::SizeId;
 use crate::formula::Formula;

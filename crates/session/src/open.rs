@@ -166,8 +166,8 @@ pub(crate) fn opened_from(
     })
 }
 
-/// The files that belong to a pattern: those given, else those that it names, where they lie in its folder or
-/// where it says. A file that it names and that is not there is left to the reader.
+/// The files that belong to a pattern: those given, else the one that it names, or that has its name, where it
+/// lies in its folder or where it says. A file that it names and that is not there is left to the reader.
 fn companions(path: &Path, bytes: &[u8], given: &[PathBuf]) -> Vec<PathBuf> {
     if !given.is_empty() {
         return given.to_vec();
@@ -183,10 +183,9 @@ fn companions(path: &Path, bytes: &[u8], given: &[PathBuf]) -> Vec<PathBuf> {
         let mut places = [folder.join(own), folder.join(&named)].into_iter();
         places.find(|place| place.is_file())
     };
-    companion_names(bytes)
-        .into_iter()
-        .filter_map(found)
-        .collect()
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut names = companion_names(bytes, &name).into_iter();
+    names.find_map(found).into_iter().collect()
 }
 
 /// Reads a `marker.json`.

@@ -24,7 +24,7 @@ const SHEETS_APART: f64 = 0.4;
 const BESIDE: f64 = 0.05;
 
 impl ToileApp {
-    fn selected_parts(&self) -> Vec<PartId> {
+    pub(super) fn selected_parts(&self) -> Vec<PartId> {
         let items = self.view.selection.items().iter();
         items.map(|item| item.part()).collect()
     }

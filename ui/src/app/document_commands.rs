@@ -246,6 +246,55 @@ commands! {
         ToileApp::show_properties,
     )
     .under_rule();
+    GIVE_GRADE_RULE = command(
+        Menu::Edit,
+        "Give grade rule",
+        None,
+        "Give the selected points a new grade rule; its shifts by size are typed into the table",
+        ToileApp::can_grade,
+        ToileApp::give_grade_rule,
+    )
+    .under_rule();
+    COPY_GRADE_RULE = command(
+        Menu::Edit,
+        "Copy grade rule",
+        None,
+        "Give the rule of the first selected point that has one to the others",
+        ToileApp::can_grade,
+        ToileApp::copy_grade_rule,
+    );
+    MIRROR_GRADE_RULE_ACROSS = command(
+        Menu::Edit,
+        "Mirror grade rule across",
+        None,
+        "Turn the shifts of the selected points from right to left",
+        ToileApp::can_grade,
+        |app| app.mirror_grade_rule(Axis::X),
+    );
+    MIRROR_GRADE_RULE_UP = command(
+        Menu::Edit,
+        "Mirror grade rule up",
+        None,
+        "Turn the shifts of the selected points from up to down",
+        ToileApp::can_grade,
+        |app| app.mirror_grade_rule(Axis::Y),
+    );
+    READ_GRADE_RULES = command(
+        Menu::Edit,
+        "Read grade rules",
+        None,
+        "Put grade rules in place of the formulas that move the selected points from size to size",
+        ToileApp::can_grade,
+        ToileApp::read_grade_rules,
+    );
+    REMOVE_GRADE_RULE = command(
+        Menu::Edit,
+        "Remove grade rule",
+        None,
+        "Leave the selected points in all sizes where they lie in the base size",
+        ToileApp::can_grade,
+        ToileApp::remove_grade_rule,
+    );
     FIND = command(
         Menu::Edit,
         "Find",
@@ -438,4 +487,16 @@ commands! {
         always,
         |app| app.change_scale(None),
     );
+}
+
+/// The commands for grade rules.
+pub(crate) fn grading_commands() -> [&'static UiCommand; 6] {
+    [
+        &GIVE_GRADE_RULE,
+        &COPY_GRADE_RULE,
+        &MIRROR_GRADE_RULE_ACROSS,
+        &MIRROR_GRADE_RULE_UP,
+        &READ_GRADE_RULES,
+        &REMOVE_GRADE_RULE,
+    ]
 }

@@ -32,6 +32,7 @@ mod files;
 mod findings;
 mod foreign_file;
 mod garment_pane;
+mod grading;
 mod job;
 mod layout;
 mod marker_cloth;

@@ -70,7 +70,7 @@ impl Tables {
         match self.tab {
             Tab::Fabric | Tab::Wearer => 290.0,
             Tab::WornWith => 180.0,
-            Tab::Measurements | Tab::Variables | Tab::History | Tab::Pattern => 80.0,
+            Tab::Measurements | Tab::Variables | Tab::Grading | Tab::History | Tab::Pattern => 80.0,
         }
     }
 

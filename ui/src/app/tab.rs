@@ -6,6 +6,7 @@ pub enum Tab {
     #[default]
     Measurements,
     Variables,
+    Grading,
     Fabric,
     Wearer,
     WornWith,

@@ -1,15 +1,32 @@
-//! Outlines of all sizes drawn on top of each other, as drafted.
+//! Outlines of all sizes drawn on top of each other, as drafted, and the ways of corners from size to size.
 
 use crate::theme;
 use egui::Color32;
+use std::collections::BTreeMap;
 use toile_geometry::Vec2;
-use toile_pattern::{Evaluation, PanelId, SizeId};
+use toile_pattern::{Evaluation, PanelId, PointId, SizeId, plan};
+
+/// Corners that move less from size to size lie still (m).
+const STILL: f64 = 1e-6;
 
 /// Outlines of every size.
 #[derive(Clone, Debug, Default)]
 pub struct Grading {
     /// The sizes, in the order of their table.
     pub sizes: Vec<GradedSize>,
+    /// Ways of the corners that move.
+    pub ways: Vec<CornerWay>,
+}
+
+/// The way of a corner from size to size.
+#[derive(Clone, Debug)]
+pub struct CornerWay {
+    /// The panel.
+    pub panel: PanelId,
+    /// Places of the corner in its plane, in the order of sizes (m).
+    pub places: Vec<Vec2>,
+    /// For each place, whether the step to it is another than the step before.
+    pub is_jump: Vec<bool>,
 }
 
 /// Outlines in one size.
@@ -32,8 +49,17 @@ impl Grading {
         mut in_size: impl FnMut(&str) -> Evaluation,
     ) -> Self {
         let pattern = evaluation.pattern();
+        let mut corners: BTreeMap<(PanelId, PointId), Vec<Vec2>> = BTreeMap::new();
+        for panel in &pattern.panels {
+            for id in panel.edges().flat_map(|edge| edge.ends) {
+                corners.insert((panel.id, id), Vec::new());
+            }
+        }
         let sizes = pattern.sizes.iter().map(|size| {
             let graded = in_size(&size.name);
+            for ((_, id), places) in &mut corners {
+                places.extend(graded.point(*id));
+            }
             let panels = pattern.panels.iter().filter_map(|panel| {
                 let stage = graded.last_stage(panel)?;
                 let rings = std::iter::once(stage.outline()).chain(stage.holes());
@@ -52,8 +78,19 @@ impl Grading {
                 panels: panels.collect(),
             }
         });
+        let sizes: Vec<GradedSize> = sizes.collect();
+        let moving = corners.into_iter().filter(|(_, places)| {
+            let is_whole = places.len() == sizes.len();
+            is_whole && places.iter().any(|p| (p - places[0]).norm() > STILL)
+        });
+        let ways = moving.map(|((panel, _), places)| CornerWay {
+            panel,
+            is_jump: plan::jumps(&places),
+            places,
+        });
         Self {
-            sizes: sizes.collect(),
+            ways: ways.collect(),
+            sizes,
         }
     }
 

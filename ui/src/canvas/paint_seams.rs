@@ -1,6 +1,6 @@
 //! Paints seams, and the outlines of all sizes.
 
-use super::grading::Grading;
+use super::grading::{CornerWay, Grading};
 use super::paint::{NUMBER_INSET, Picture};
 use super::panel_shape::along;
 use super::scene::PanelScene;
@@ -131,6 +131,31 @@ impl Picture<'_> {
             let own = size.panels.iter().filter(|(id, _)| *id == panel.id);
             for ring in own.flat_map(|(_, rings)| rings) {
                 self.painter.line(self.line(origin, ring), stroke);
+            }
+        }
+        for way in grading.ways.iter().filter(|way| way.panel == panel.id) {
+            self.corner_way(origin, way);
+        }
+    }
+
+    /// Paints the way of a corner from size to size, with a dot for each; a jump is marked by its colour and a
+    /// ring.
+    fn corner_way(&self, origin: Vec2, way: &CornerWay) {
+        let places = self.line(origin, &way.places);
+        for k in 1..places.len() {
+            let (colour, width) = match way.is_jump[k] {
+                true => (self.palette.warning, 2.0),
+                false => (self.palette.ink_soft, 1.0),
+            };
+            let stroke = Stroke::new(width, colour);
+            self.painter
+                .line_segment([places[k - 1], places[k]], stroke);
+        }
+        for (k, &at) in places.iter().enumerate() {
+            self.painter.circle_filled(at, 2.5, Grading::colour(k));
+            if way.is_jump[k] {
+                let stroke = Stroke::new(1.5, self.palette.warning);
+                self.painter.circle_stroke(at, 5.0, stroke);
             }
         }
     }

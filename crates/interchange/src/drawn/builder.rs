@@ -1,13 +1,14 @@
 //! Makes a document of drawn pieces.
 //!
-//! Every vertex becomes a point of the sheet with its place in each size; vertices between two corners become
-//! one edge, straight or a spline through them. Edges of the sew line get the allowance that their distance to
-//! the cut line shows.
+//! Every vertex becomes a point of the sheet; vertices between two corners become one edge, straight or a spline
+//! through them. Corners grade by rules, points between them with their corners ([`crate::drawn::graded`]). Edges
+//! of the sew line get the allowance that their distance to the cut line shows.
 
 use super::corners::{corners, is_straight, lies_along};
 use super::cubics::{Cubics, cubics};
 use super::cut_fit::{CutFit, cut_fit, edges_of, ring_of};
 use super::drill::{DRILL_LENGTH, DRILL_NAME};
+use super::graded::{Frame, Rules, SizedPlaces};
 use super::holes::sound_holes;
 use super::marks::{Marked, OutlinePlace};
 use super::piece::{DrawnLine, DrawnPattern, DrawnPiece, Span};
@@ -17,11 +18,11 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Polygon, Vec2};
 use toile_pattern::{
-    CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number, Operation,
-    OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
+    CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Operation, OperationKind,
+    PanelBuilder, Pattern, PointId, Size, SizeId,
 };
 
-/// Coordinates of two sizes that differ by less are one (m).
+/// Shares of an edge in two sizes that differ by less are one (1).
 const SAME: f64 = 1e-9;
 /// Largest distance of the ends of a fold line from a vertex of the outline (m).
 pub(crate) const ON_VERTEX: f64 = 2e-4;
@@ -50,12 +51,15 @@ pub(crate) fn document(drawn: &DrawnPattern) -> (Pattern, Vec<Loss>) {
     pattern.base_size = sizes.get(drawn.base).copied();
     let mut builder = Builder {
         pattern,
+        rules: Rules::new(&sizes, drawn.base, &drawn.rules),
         sizes,
         base: drawn.base,
         names: BTreeSet::new(),
         losses: Vec::new(),
     };
     drawn.pieces.iter().for_each(|piece| builder.piece(piece));
+    let variables = builder.rules.variables.drain(..).map(Arc::new);
+    builder.pattern.variables.extend(variables);
     lay_out(&mut builder.pattern, &drawn.pieces, drawn.base);
     (builder.pattern, builder.losses)
 }
@@ -67,6 +71,7 @@ pub(crate) fn add_pieces(pattern: &mut Pattern, pieces: &[DrawnPiece]) -> Vec<Lo
     let mut builder = Builder {
         names: panels.chain(sheets).collect(),
         pattern: std::mem::take(pattern),
+        rules: Rules::new(&[], 0, &[]),
         sizes: Vec::new(),
         base: 0,
         losses: Vec::new(),
@@ -78,6 +83,7 @@ pub(crate) fn add_pieces(pattern: &mut Pattern, pieces: &[DrawnPiece]) -> Vec<Lo
 
 struct Builder {
     pattern: Pattern,
+    rules: Rules,
     sizes: Vec<SizeId>,
     base: usize,
     /// Names of panels that are taken.
@@ -212,7 +218,7 @@ impl Builder {
                 }
                 Some(OutlinePlace::Corner(corner)) => Mark::corner(points[corner]),
                 Some(OutlinePlace::Between { corners, shares }) => {
-                    let share = self.number(|size| shares[size]);
+                    let share = self.rules.number(SAME, |size| shares[size]);
                     Mark::between(corners.map(|k| points[k]), share)
                 }
             };
@@ -250,31 +256,6 @@ impl Builder {
         let drawn = drawing.done();
         self.pattern.ids = ids;
         self.pattern.add(drawn);
-    }
-
-    /// A number with its values in all sizes.
-    fn number(&self, values: impl Fn(usize) -> f64) -> Number {
-        let usual = values(self.base);
-        let others = self.sizes.iter().enumerate();
-        let others = others.filter(|&(k, _)| k != self.base);
-        let differing: Vec<(SizeId, f64)> = others
-            .map(|(k, &size)| (size, values(k)))
-            .filter(|(_, value)| (value - usual).abs() > SAME)
-            .collect();
-        match differing.is_empty() {
-            true => usual.into(),
-            false => Number::PerSize {
-                usual: Box::new(usual.into()),
-                sizes: differing,
-            },
-        }
-    }
-
-    fn rule(&self, at: impl Fn(usize) -> Vec2) -> PointRule {
-        PointRule::At {
-            x: self.number(|size| at(size).x),
-            y: self.number(|size| at(size).y),
-        }
     }
 
     /// Tells something that was left out of a piece.
@@ -336,15 +317,26 @@ impl Builder {
     ) -> Built {
         let count = line.len();
         let at = |k: usize, size: usize| line.in_size(size)[k % count];
-        let points: Vec<PointId> = (0..count)
-            .map(|k| {
-                numbers.points += 1;
-                drawing.point(
-                    format!("p{}", numbers.points),
-                    self.rule(|size| at(k, size)),
-                )
-            })
-            .collect();
+        let place = |k: usize| SizedPlaces::new(&|size| at(k, size), self.sizes.len());
+        let name = |k: usize| format!("p{}", numbers.points + k + 1);
+        let mut points: Vec<PointId> = vec![PointId::default(); count];
+        for &k in &corners {
+            let rule = self.rules.corner(drawing, &place(k));
+            points[k] = drawing.point(name(k), rule);
+        }
+        let mut frames = Vec::with_capacity(curves.len());
+        for (c, &from) in corners.iter().enumerate().take(curves.len()) {
+            let next = corners[(c + 1) % corners.len()];
+            let to = if next > from { next } else { next + count };
+            let ends = [from, next];
+            let frame = self.rules.frame(ends.map(|k| points[k]), &ends.map(place));
+            for k in from + 1..to {
+                let k = k % count;
+                points[k] = drawing.point(name(k), self.rules.between(&frame, &place(k)));
+            }
+            frames.push(frame);
+        }
+        numbers.points += count;
         let mut edges = Vec::with_capacity(curves.len());
         for (c, curve) in curves.iter().enumerate() {
             let from = corners[c];
@@ -355,7 +347,8 @@ impl Builder {
             let rule = match curve {
                 None => CurveRule::Line,
                 Some(cubics) => {
-                    self.spline(drawing, numbers, cubics, |k| points[(from + k) % count])
+                    let vertex = |k: usize| points[(from + k) % count];
+                    self.spline(drawing, numbers, (cubics, &frames[c]), vertex)
                 }
             };
             edges.push(drawing.edge(name, ends, rule));
@@ -392,7 +385,7 @@ impl Builder {
         &mut self,
         drawing: &mut PanelBuilder<'_>,
         numbers: &mut Numbers,
-        cubics: &Cubics,
+        (cubics, frame): (&Cubics, &Frame),
         vertex: impl Fn(usize) -> PointId,
     ) -> CurveRule {
         if cubics.has_chords {
@@ -402,8 +395,9 @@ impl Builder {
         }
         let mut handle = |k: usize, end: usize| {
             numbers.handles += 1;
-            let rule = self
-                .rule(|size| cubics.by_size[size.min(cubics.by_size.len() - 1)][k].handles[end]);
+            let at = |size: usize| cubics.in_size(size)[k].handles[end];
+            let place = SizedPlaces::new(&at, self.sizes.len());
+            let rule = self.rules.between(frame, &place);
             drawing.point(format!("h{}", numbers.handles), rule)
         };
         let count = cubics.ends_at_vertex.len();
@@ -421,8 +415,10 @@ impl Builder {
                 vertex(vertices)
             } else {
                 numbers.points += 1;
-                let at = |size: usize| cubics.by_size[size.min(cubics.by_size.len() - 1)][k].end;
-                drawing.point(format!("p{}", numbers.points), self.rule(at))
+                let at = |size: usize| cubics.in_size(size)[k].end;
+                let place = SizedPlaces::new(&at, self.sizes.len());
+                let rule = self.rules.between(frame, &place);
+                drawing.point(format!("p{}", numbers.points), rule)
             };
             knots.push(Knot {
                 before,

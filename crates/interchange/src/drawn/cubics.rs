@@ -36,7 +36,13 @@ pub(crate) struct Cubics {
 }
 
 impl Cubics {
-    /// The cubics in a size.
+    /// The cubics in a size; those of the last size where it has no others.
+    pub fn in_size(&self, size: usize) -> &[Cubic] {
+        let own = self.by_size.get(size).or(self.by_size.last());
+        own.map_or(&[], Vec::as_slice)
+    }
+
+    /// The curves in a size.
     pub fn curves(&self, size: usize) -> Vec<Curve> {
         let mut start = self.starts[size];
         let own = self.by_size[size].iter();

@@ -12,6 +12,7 @@
 //! - [`crate::drawn::holes`]: cut-outs within an outline;
 //! - [`crate::drawn::inset`]: a sew line inside a cut line;
 //! - [`crate::drawn::marks`], [`crate::drawn::drill`]: places of notches; marks of drill holes;
+//! - [`crate::drawn::graded`]: points that follow sizes;
 //! - [`crate::drawn::builder`]: the document.
 
 pub(crate) mod allowance;
@@ -22,6 +23,7 @@ pub(crate) mod cubics;
 pub(crate) mod cut_fit;
 pub(crate) mod drill;
 pub(crate) mod fit;
+pub(crate) mod graded;
 pub(crate) mod holes;
 pub(crate) mod inset;
 pub(crate) mod marks;

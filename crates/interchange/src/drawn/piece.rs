@@ -21,6 +21,8 @@ pub(crate) struct DrawnPattern {
     pub base: usize,
     /// The pieces.
     pub pieces: Vec<DrawnPiece>,
+    /// Grade rules that the file numbers: the number, and the shift in each size against the base size (m).
+    pub rules: Vec<(u32, Vec<Vec2>)>,
 }
 
 /// A piece.

@@ -138,6 +138,8 @@ pub(super) struct BlockPiece {
     pub cutouts: Vec<BlockLine>,
     pub mirror: Vec<BlockLine>,
     pub grain: Vec<BlockLine>,
+    /// Axes that the shifts of grade rules run along.
+    pub axes: Vec<BlockLine>,
     pub turn_points: Vec<Vec2>,
     /// Notches with their shape.
     pub notches: Vec<(Vec2, NotchKind)>,
@@ -156,7 +158,7 @@ pub(super) struct BlockPiece {
     pub open_cuts: usize,
     /// Number of closed cut lines that enclose nothing.
     pub flat_cuts: usize,
-    /// Number of lines on layers of grading, stripes, plaids and annotation.
+    /// Number of lines on layers of stripes, plaids and annotation.
     pub references: usize,
     /// Number of lines and points on layers of no standard.
     pub others: usize,
@@ -220,7 +222,8 @@ impl BlockPiece {
                 Layer::Cutout => piece.cutouts.extend(found),
                 Layer::Mirror => piece.mirror.extend(found),
                 Layer::Grain => piece.grain.extend(found),
-                Layer::GradeReference | Layer::Annotation => piece.references += found.count(),
+                Layer::GradeReference => piece.axes.extend(found),
+                Layer::Annotation => piece.references += found.count(),
                 Layer::Notches(kind) => piece.notch_lines.extend(found.map(|line| (line, kind))),
                 Layer::Twin(number) => piece.twins.extend(found.map(|line| (number, line))),
                 Layer::TurnPoints | Layer::CurvePoints | Layer::Drill | Layer::Other => {}

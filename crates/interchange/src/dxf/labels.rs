@@ -42,6 +42,11 @@ impl Labels {
         values.map(String::as_str).find(|value| !value.is_empty())
     }
 
+    /// Sets the value of a key, in lower case without blanks.
+    pub fn set(&mut self, key: &str, value: &str) {
+        self.values.insert(key.to_owned(), value.to_owned());
+    }
+
     /// Adds to the name of the piece, if it has one.
     pub fn add_to_name(&mut self, text: &str) {
         for key in ["piecename", "piece"] {

@@ -53,6 +53,7 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
             cutouts: lines(&piece.cutouts),
             mirror: lines(&piece.mirror),
             grain: lines(&piece.grain),
+            axes: lines(&piece.axes),
             turn_points: points(&piece.turn_points),
             notches: piece
                 .notches

@@ -6,10 +6,11 @@ use super::drawing_reader::read_drawing;
 use super::labels::Labels;
 use super::piece_maker::PieceMaker;
 use super::sized_pieces::Nest;
+use super::with_table::{Units, with_table};
 use crate::drawn::builder::document;
 use crate::drawn::piece::DrawnPattern;
 use crate::drawn::unit::unit;
-use crate::{Format, FormatError, Guess, Loss, ReadOption, ReadOptions};
+use crate::{Companion, Format, FormatError, Guess, Loss, ReadOption, ReadOptions};
 use toile_geometry::Bounds2;
 use toile_pattern::{DisplayUnit, Pattern};
 
@@ -26,11 +27,16 @@ pub(crate) struct DxfReading {
     pub losses: Vec<Loss>,
 }
 
-/// Reads a pattern.
+/// Reads a pattern, with the grade rule table among its companions if there is one.
 ///
 /// # Errors
-/// A damaged file, or one without a closed line: the fault, its place and a remedy.
-pub(crate) fn read_dxf(bytes: &[u8], options: &ReadOptions) -> Result<DxfReading, FormatError> {
+/// A damaged file, or one without a closed line; a companion that is no grade rule table, or one of other sizes:
+/// the fault, its place and a remedy.
+pub(crate) fn read_dxf(
+    bytes: &[u8],
+    options: &ReadOptions,
+    companions: &[Companion],
+) -> Result<DxfReading, FormatError> {
     let drawing = read_drawing(bytes)?;
     let Pieces {
         pieces,
@@ -52,7 +58,10 @@ pub(crate) fn read_dxf(bytes: &[u8], options: &ReadOptions) -> Result<DxfReading
         true => Format::DxfAstm,
         false => Format::DxfAama,
     };
-    let nest = Nest::of(pieces, &style);
+    let sized = with_table(pieces, companions, (&mut style, Units { unit, stated }))?;
+    guesses.extend(sized.guesses);
+    losses.extend(sized.losses);
+    let nest = Nest::of(sized.pieces, &style);
     check_points(&nest)?;
     let mut maker = PieceMaker {
         base: nest.base,
@@ -74,6 +83,7 @@ pub(crate) fn read_dxf(bytes: &[u8], options: &ReadOptions) -> Result<DxfReading
             .filter_map(|piece| maker.piece(piece))
             .collect(),
         sizes: nest.sizes,
+        rules: sized.rules,
     };
     guesses.extend(nest.guesses);
     if maker.without_sew_line > 0 && options.allowance_inside.is_none() {

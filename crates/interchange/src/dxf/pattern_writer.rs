@@ -1,21 +1,20 @@
-//! Patterns as DXF (ANSI/AAMA-292, ASTM D6673): a block for each piece and size, in millimetres.
+//! Patterns as DXF (ANSI/AAMA-292, ASTM D6673): a block for each piece and size, in millimetres; and the grade
+//! rules of their points.
 //!
-//! Nothing but pieces stands in blocks, as readers take every block for one. Sew lines have as many vertices in
-//! every size, so that readers can take shifts of points from one to another.
+//! Nothing but pieces stands in blocks, as readers take every block for one. Lines have as many vertices in every
+//! size, so that readers can take shifts of points from one to another; the block of the sample size numbers them.
 
+use super::nest_piece::{NestPiece, SizedPiece, drills};
+use super::rule_numbers::RuleNumbers;
 use super::writer::DxfWriter;
 use crate::drawn::drill::is_drill;
 use crate::exchange::{SizedDraft, WriteSource};
 use crate::{FormatError, Loss};
 use std::collections::BTreeSet;
-use toile_cut::{CutNotch, CutOptions, CutPiece, InsideLine, PieceRing, PieceSegment};
-use toile_geometry::{Bounds2, Curve, Vec2};
-use toile_pattern::{Cut, Draft, Name, NotchKind, Panel, Piece, PieceId};
+use toile_cut::{CutNotch, CutOptions, CutPiece, InsideLine};
+use toile_geometry::{Bounds2, Vec2};
+use toile_pattern::{Cut, Draft, Name, NotchKind, Panel, Pattern, Piece, PieceId};
 
-/// Largest distance of a chord from its curve (m).
-const FLATNESS: f64 = 4e-5;
-/// Largest distance of the chords of a twin from its curve (m).
-const TWIN_FLATNESS: f64 = 8e-6;
 /// Longest name of a block (characters).
 const MAX_NAME: usize = 31;
 /// Width of a V notch at the cut line (m).
@@ -41,15 +40,25 @@ const LAYERS: &[(&str, u8)] = &[
     ("87", 3),
 ];
 
-/// Writes the pieces of a pattern in its sizes, the base size first among the drafts; also returns what single
-/// pieces lost. `is_astm` chooses the standard.
+/// A pattern in DXF, and what goes with it.
+pub(crate) struct DxfWriting {
+    /// The drawing.
+    pub text: String,
+    /// The grade rule table (RUL), if there are several sizes.
+    pub rules: Option<String>,
+    /// Contents that single pieces lost.
+    pub losses: Vec<Loss>,
+}
+
+/// Writes the pieces of a pattern in its sizes, the base size first among the drafts. `is_astm` chooses the
+/// standard.
 ///
 /// # Errors
 /// There is no draft, or a piece without a cut line: its name, and the reason.
 pub(crate) fn write_dxf(
     source: &WriteSource<'_>,
     is_astm: bool,
-) -> Result<(String, Vec<Loss>), FormatError> {
+) -> Result<DxfWriting, FormatError> {
     let base = source.drafts.first().ok_or_else(|| {
         FormatError::new("the pattern", "it has no draft", "mend its faults first")
     })?;
@@ -58,14 +67,19 @@ pub(crate) fn write_dxf(
         is_astm,
         dxf: DxfWriter::new(LAYERS.to_vec()),
         names: BTreeSet::new(),
+        rules: RuleNumbers::new(source.drafts.len()),
+        losses: Vec::new(),
     };
     writer.style(base);
     for piece in base.draft.pieces.iter().filter(|piece| piece.id.copy == 0) {
-        for sized in source.drafts {
-            writer.piece(piece.id, sized)?;
-        }
+        writer.piece(piece.id)?;
     }
-    Ok((writer.dxf.finish(), Vec::new()))
+    let rules = (source.drafts.len() > 1).then(|| writer.table());
+    Ok(DxfWriting {
+        text: writer.dxf.finish(),
+        rules,
+        losses: writer.losses,
+    })
 }
 
 struct PatternWriter<'a> {
@@ -74,13 +88,15 @@ struct PatternWriter<'a> {
     dxf: DxfWriter,
     /// Names of blocks that are taken.
     names: BTreeSet<String>,
+    rules: RuleNumbers,
+    losses: Vec<Loss>,
 }
 
 impl PatternWriter<'_> {
     /// The texts that are about the whole style.
     fn style(&mut self, base: &SizedDraft) {
         let size = base.size.as_deref().unwrap_or("ONE");
-        let texts = [
+        let mut texts = vec![
             format!("Style Name: {}", self.source.pattern.name),
             "Author: Toile".to_owned(),
             format!("Product: Toile {}", env!("CARGO_PKG_VERSION")),
@@ -91,19 +107,88 @@ impl PatternWriter<'_> {
             format!("Sample Size: {size}"),
             "Units: METRIC".to_owned(),
         ];
+        if self.source.drafts.len() > 1 {
+            texts.push(format!("Grade Rule Table: {}", self.source.pattern.name));
+        }
         for (k, text) in texts.iter().enumerate() {
             self.dxf.label("1", text, Vec2::new(0.0, -0.01 * k as f64));
         }
     }
 
-    fn piece(&mut self, id: PieceId, sized: &SizedDraft) -> Result<(), FormatError> {
+    /// The grade rule table, its sizes in the order of the pattern.
+    fn table(&self) -> String {
+        let drafts = self.source.drafts;
+        let sizes: Vec<&str> = drafts
+            .iter()
+            .map(|sized| sized.size.as_deref().unwrap_or("ONE"))
+            .collect();
+        let mut order: Vec<usize> = (0..sizes.len()).collect();
+        let known = &self.source.pattern.sizes;
+        order.sort_by_key(|&k| known.iter().position(|size| size.name == sizes[k]));
+        self.rules
+            .table(&self.source.pattern.name, &sizes, &order, self.is_astm)
+    }
+
+    fn piece(&mut self, id: PieceId) -> Result<(), FormatError> {
+        let Some(panel) = self.source.pattern.panel(id.panel) else {
+            return Ok(());
+        };
+        let mut sized = Vec::with_capacity(self.source.drafts.len());
+        for draft in self.source.drafts {
+            let own = self.in_size(id, draft)?;
+            sized.extend(own);
+        }
+        let source = self.source;
+        let drill_of = |line: &InsideLine| drill_of(source.pattern, line);
+        let nest = NestPiece::new(&sized, self.is_astm, &drill_of);
+        let has_rules = sized.len() > 1 && sized.len() == self.source.drafts.len();
+        if has_rules && nest.unlike > 0 {
+            self.losses.push(Loss {
+                count: nest.unlike,
+                ..Loss::at(
+                    &panel.name,
+                    "lines with grade rules",
+                    "they are made of other parts in some sizes, whose blocks hold their shape",
+                )
+            });
+        }
+        for (k, own) in sized.iter().enumerate() {
+            let size = own.size.unwrap_or("ONE");
+            let name = self.block_name(&panel.name, own.size);
+            self.dxf.begin_block(&name);
+            self.texts(panel, (own.piece, own.draft), size, &own.cut);
+            self.lines(&nest, k);
+            if let Some(ends) = grain_line(&own.cut) {
+                self.dxf.polyline("7", &ends, false);
+            }
+            for notch in &own.cut.notches {
+                self.notch(notch);
+            }
+            for at in drills(&own.cut, &drill_of) {
+                self.dxf.mark("13", at, &[(30, 0.0)]);
+            }
+            if k == 0 && has_rules {
+                self.numbers(&nest);
+            }
+            self.dxf.end_block(&name);
+        }
+        Ok(())
+    }
+
+    /// A piece as it is cut in one size. `None`: the draft has no such piece.
+    fn in_size<'d>(
+        &self,
+        id: PieceId,
+        sized: &'d SizedDraft,
+    ) -> Result<Option<SizedPiece<'d>>, FormatError> {
         let draft = &sized.draft;
         let Some(number) = draft.pieces.iter().position(|piece| piece.id == id) else {
-            return Ok(());
+            return Ok(None);
         };
         let piece = &draft.pieces[number];
         let of = (self.source.pattern, draft);
-        let cut = CutPiece::new(of, number, (sized.size.as_deref(), &CutOptions::default()));
+        let size = sized.size.as_deref();
+        let cut = CutPiece::new(of, number, (size, &CutOptions::default()));
         let cut = cut.map_err(|error| {
             FormatError::new(
                 format!("piece {}", piece.name),
@@ -111,22 +196,12 @@ impl PatternWriter<'_> {
                 "mend it first",
             )
         })?;
-        let Some(panel) = self.source.pattern.panel(id.panel) else {
-            return Ok(());
-        };
-        let size = sized.size.as_deref().unwrap_or("ONE");
-        let name = self.block_name(&panel.name, sized.size.as_deref());
-        self.dxf.begin_block(&name);
-        self.texts(panel, (piece, draft), size, &cut);
-        self.lines(piece, &cut);
-        for notch in &cut.notches {
-            self.notch(notch);
-        }
-        for drill in &cut.drills {
-            self.dxf.mark("13", drill.at, &[(30, 0.0)]);
-        }
-        self.dxf.end_block(&name);
-        Ok(())
+        Ok(Some(SizedPiece {
+            size,
+            draft,
+            piece,
+            cut,
+        }))
     }
 
     /// A name of a block in plain letters, unique in the file.
@@ -181,93 +256,31 @@ impl PatternWriter<'_> {
         }
     }
 
-    fn lines(&mut self, piece: &Piece, cut: &CutPiece) {
-        let [layer_twin, sew_twin] = ["84", "87"];
-        for (k, ring) in cut.cut.iter().enumerate() {
-            let layer = if k == 0 { "1" } else { "11" };
-            let points = thinned(ring, FLATNESS);
-            self.dxf.polyline(layer, &points, true);
-            if k == 0 {
-                self.marks_of(ring, &points);
-                if self.is_astm {
-                    self.dxf
-                        .polyline(layer_twin, &thinned(ring, TWIN_FLATNESS), true);
-                }
-            }
-        }
-        let has_allowance = piece.outline.iter().any(|edge| edge.seam_allowance != 0.0);
-        if has_allowance {
-            let sew = self.sampled(piece, FLATNESS);
-            self.dxf.polyline("14", &sew, true);
-            let corners: Vec<Vec2> = piece
-                .outline
-                .iter()
-                .map(|edge| edge.curve.start())
-                .collect();
-            for &at in &sew {
-                let layer = if corners.contains(&at) { "2" } else { "3" };
+    /// The lines of a piece in the size of a number, with their corners and curve points.
+    fn lines(&mut self, nest: &NestPiece, size: usize) {
+        for line in &nest.lines {
+            self.dxf
+                .polyline(line.layer, &line.by_size[size], line.is_closed);
+            let corners = line.is_corner.get(size).map_or(&[][..], Vec::as_slice);
+            for (&at, &is_corner) in line.by_size[size].iter().zip(corners) {
+                let layer = if is_corner { "2" } else { "3" };
                 self.dxf.mark(layer, at, &[]);
             }
-            if self.is_astm {
-                let twin = self.sampled(piece, TWIN_FLATNESS);
-                self.dxf.polyline(sew_twin, &twin, true);
+        }
+    }
+
+    /// The numbers of the grade rules of all points, at their places in the sample size.
+    fn numbers(&mut self, nest: &NestPiece) {
+        for (layer, by_size) in nest.ruled() {
+            let [base, ..] = &by_size[..] else {
+                continue;
+            };
+            for (k, &at) in base.iter().enumerate() {
+                let places: Vec<Vec2> = by_size.iter().map(|own| own[k]).collect();
+                let number = self.rules.of(&places);
+                self.dxf.label(layer, &format!("# {number}"), at);
             }
         }
-        for line in &cut.inside {
-            match self.drill_of(line) {
-                Some(at) => self.dxf.mark("13", at, &[(30, 0.0)]),
-                None => self.dxf.polyline("8", &line.points, false),
-            }
-        }
-        if let Some(ends) = grain_line(cut) {
-            self.dxf.polyline("7", &ends, false);
-        }
-    }
-
-    /// The drill hole that a line inside marks.
-    fn drill_of(&self, line: &InsideLine) -> Option<Vec2> {
-        let Name::Drawn(id) = line.name else {
-            return None;
-        };
-        let ends = [*line.points.first()?, *line.points.last()?];
-        let mut lines = self
-            .source
-            .pattern
-            .panels
-            .iter()
-            .flat_map(|panel| &panel.lines);
-        let drawn = lines.find(|drawn| drawn.id == id)?;
-        is_drill(&drawn.name, (ends[1] - ends[0]).norm()).then(|| 0.5 * (ends[0] + ends[1]))
-    }
-
-    /// Corners and curve points of the cut line.
-    fn marks_of(&mut self, ring: &PieceRing, written: &[Vec2]) {
-        for &at in written {
-            let k = ring.points.iter().position(|p| *p == at).unwrap_or(0);
-            let layer = if is_corner(ring, k) { "2" } else { "3" };
-            self.dxf.mark(layer, at, &[]);
-        }
-    }
-
-    /// The sew line of a piece, each edge sampled at equal shares of its length with as many chords in every size.
-    fn sampled(&self, piece: &Piece, tolerance: f64) -> Vec<Vec2> {
-        let alike: Vec<&Piece> = self
-            .source
-            .drafts
-            .iter()
-            .filter_map(|sized| sized.draft.pieces.iter().find(|other| other.id == piece.id))
-            .filter(|other| other.outline.len() == piece.outline.len())
-            .collect();
-        let mut points = Vec::new();
-        for (k, edge) in piece.outline.iter().enumerate() {
-            let chords = alike
-                .iter()
-                .map(|other| chords(&other.outline[k].curve, tolerance));
-            let count = chords.max().unwrap_or(1);
-            points.extend(edge.curve.sample(0.0, 1.0, count));
-            points.pop();
-        }
-        points
     }
 
     fn notch(&mut self, notch: &CutNotch) {
@@ -289,61 +302,15 @@ impl PatternWriter<'_> {
     }
 }
 
-/// Number of chords at equal shares of a curve's length that stay within a tolerance (m).
-fn chords(curve: &Curve, tolerance: f64) -> usize {
-    match curve {
-        Curve::Line { .. } => 1,
-        // Parameters and shares of the length differ: twice as many are safe.
-        Curve::Arc { .. } | Curve::Quadratic { .. } | Curve::Cubic { .. } => {
-            (2 * curve.chord_count(tolerance)).max(2)
-        }
-    }
-}
-
-/// Whether the segments before and after a vertex come from different edges.
-fn is_corner(ring: &PieceRing, k: usize) -> bool {
-    let count = ring.segments.len();
-    let edge = |k: usize| match ring.segments.get(k % count.max(1)) {
-        Some(PieceSegment::Edge(edge)) => Some(*edge),
-        Some(
-            PieceSegment::DartCap(_)
-            | PieceSegment::Corner(_)
-            | PieceSegment::Fold
-            | PieceSegment::Unknown,
-        )
-        | None => None,
+/// The drill hole that a line inside marks.
+fn drill_of(pattern: &Pattern, line: &InsideLine) -> Option<Vec2> {
+    let Name::Drawn(id) = line.name else {
+        return None;
     };
-    count == 0 || edge(k + count - 1) != edge(k) || edge(k).is_none()
-}
-
-/// The vertices of a line without those that lie within a tolerance (m) of the chord between their neighbours
-/// that stay; corners stay (Douglas and Peucker 1973).
-fn thinned(ring: &PieceRing, tolerance: f64) -> Vec<Vec2> {
-    let count = ring.points.len();
-    let corners: Vec<usize> = (0..count).filter(|&k| is_corner(ring, k)).collect();
-    let Some(&first) = corners.first() else {
-        return ring.points.clone();
-    };
-    let mut stays = vec![false; count];
-    corners.iter().for_each(|&k| stays[k] = true);
-    let ends = corners.iter().skip(1).copied().chain([first + count]);
-    let mut open: Vec<(usize, usize)> = corners.iter().copied().zip(ends).collect();
-    let at = |k: usize| ring.points[k % count];
-    while let Some((from, to)) = open.pop() {
-        let along = at(to) - at(from);
-        let length = along.norm();
-        let off = |k: &usize| match length > 0.0 {
-            true => (along.perp(&(at(*k) - at(from))) / length).abs(),
-            false => (at(*k) - at(from)).norm(),
-        };
-        let farthest = (from + 1..to).max_by(|a, b| off(a).total_cmp(&off(b)));
-        if let Some(k) = farthest.filter(|k| off(k) > tolerance) {
-            stays[k % count] = true;
-            open.extend([(from, k), (k, to)]);
-        }
-    }
-    let kept = ring.points.iter().zip(stays).filter(|(_, stays)| *stays);
-    kept.map(|(p, _)| *p).collect()
+    let ends = [*line.points.first()?, *line.points.last()?];
+    let mut lines = pattern.panels.iter().flat_map(|panel| &panel.lines);
+    let drawn = lines.find(|drawn| drawn.id == id)?;
+    is_drill(&drawn.name, (ends[1] - ends[0]).norm()).then(|| 0.5 * (ends[0] + ends[1]))
 }
 
 /// A line along the grain inside a piece: on the longest stretch of cloth through the middle of its bounds.

@@ -233,7 +233,7 @@ impl PieceMaker {
             (
                 own.rules.len(),
                 "numbers of grade rules",
-                "sizes come from the blocks of the file",
+                "rules come from the blocks of sizes, or from a table given with --with",
             ),
             (own.u_notches, "U notches", "read as V notches"),
             (
@@ -248,7 +248,7 @@ impl PieceMaker {
                 "further mirror lines",
                 "a piece is read with one fold",
             ),
-            (own.references, "reference lines", no_place),
+            (own.references + own.axes.len(), "reference lines", no_place),
             (
                 own.others,
                 "lines and points on layers of no standard",

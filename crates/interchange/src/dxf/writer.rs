@@ -20,7 +20,7 @@ pub(crate) struct DxfWriter {
 }
 
 /// A number as text with at most four decimals (0.0001 mm for a length), without trailing zeros.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let text = format!("{value:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" {
@@ -32,7 +32,7 @@ fn number(value: f64) -> String {
 
 /// A text on one line: control characters become spaces; other characters beyond ASCII become `\U+` with their
 /// UTF-16 code.
-fn plain(text: &str) -> String {
+pub(super) fn plain(text: &str) -> String {
     let mut safe = String::new();
     for c in text.chars() {
         match c {

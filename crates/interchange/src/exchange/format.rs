@@ -135,7 +135,8 @@ impl Format {
             (_, ReadOption::Format) => true,
             (Self::Native | Self::GarmentCode, _) => false,
             (Self::Valentina | Self::Seamly, option) => option == ReadOption::With,
-            (Self::Svg | Self::DxfAama | Self::DxfAstm, option) => option != ReadOption::With,
+            (Self::Svg, option) => option != ReadOption::With,
+            (Self::DxfAama | Self::DxfAstm, _) => true,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Patterns read from bytes.
 
 use super::{Companion, Format, Guess, Loss, ReadOption, ReadOptions};
-use crate::dxf::read_dxf;
+use crate::dxf::{read_dxf, rule_table_names};
 use crate::native::{Fitting, PatternFile};
 use crate::svg::{SvgReading, read_svg};
 use crate::valentina::{ValentinaReading, measurement_file, read_valentina};
@@ -47,17 +47,16 @@ impl Reading {
     }
 }
 
-/// Names of the files that a pattern needs beside itself, with the folders that it names them in.
-pub fn companion_names(bytes: &[u8]) -> Vec<String> {
+/// Names that the file which a pattern needs beside itself may have, with the folders that it names them in; the
+/// first that is there is meant. `name` is that of the pattern's own file.
+pub fn companion_names(bytes: &[u8], name: &str) -> Vec<String> {
     match FileKind::of(bytes).and_then(Format::of_kind) {
         Some(Format::Valentina | Format::Seamly) => {
             let named = text(bytes).ok().and_then(measurement_file);
             named.into_iter().collect()
         }
-        Some(
-            Format::Native | Format::GarmentCode | Format::Svg | Format::DxfAama | Format::DxfAstm,
-        )
-        | None => Vec::new(),
+        Some(Format::DxfAama | Format::DxfAstm) => rule_table_names(bytes, name),
+        Some(Format::Native | Format::GarmentCode | Format::Svg) | None => Vec::new(),
     }
 }
 
@@ -116,7 +115,7 @@ pub fn read(
             })
         }
         Format::DxfAama | Format::DxfAstm => {
-            let reading = read_dxf(bytes, options)?;
+            let reading = read_dxf(bytes, options, companions)?;
             // What is asked for holds against the signs of the file.
             Ok(Reading {
                 guesses: reading.guesses,

@@ -2,7 +2,7 @@
 
 use super::contents::losses;
 use super::{Content, Format, Loss, WriteSource, Writing, Written};
-use crate::dxf::write_dxf;
+use crate::dxf::{DxfWriting, write_dxf};
 use crate::native::Fitting;
 use crate::svg::write_svg;
 use crate::{FormatError, write_document, write_garmentcode};
@@ -43,9 +43,18 @@ pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, Format
         )),
         Format::Svg => Ok(one(write_svg(source)?, Vec::new())),
         Format::DxfAama | Format::DxfAstm => {
-            let (text, mut further) = write_dxf(source, format == Format::DxfAstm)?;
-            further.extend(fitting_lost(source.fitting));
-            Ok(one(text, further))
+            let DxfWriting {
+                text,
+                rules,
+                mut losses,
+            } = write_dxf(source, format == Format::DxfAstm)?;
+            losses.extend(fitting_lost(source.fitting));
+            let mut writing = one(text, losses);
+            writing.files.extend(rules.map(|rules| Written {
+                ending: ".rul",
+                bytes: rules.into_bytes(),
+            }));
+            Ok(writing)
         }
         Format::GarmentCode => {
             let base = source.drafts.first().ok_or_else(|| {

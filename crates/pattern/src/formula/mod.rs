@@ -23,6 +23,7 @@ mod complete;
 mod compute;
 mod cursor;
 mod names;
+mod of_variable;
 mod parse;
 mod plain;
 mod print;

@@ -15,6 +15,7 @@
 //!   copied and pasted, with free names;
 //! - [`crate::plan::divide`], [`crate::plan::rename`](mod@crate::plan::rename), [`crate::plan::remove`]:
 //!   edges divided, parts renamed and removed;
+//! - [`crate::plan::grade`]: grade rules of points;
 //! - [`crate::plan::numbers`], [`crate::plan::typed`], [`crate::plan::sizes`], [`crate::plan::marker`],
 //!   [`crate::plan::guide`]: numbers set and typed; sizes, markers, guides.
 //!
@@ -36,6 +37,7 @@ mod figure;
 mod finished;
 mod formula_change;
 mod fragment;
+mod grade;
 mod guide;
 mod lookup;
 mod marker;
@@ -74,6 +76,10 @@ pub use figure::{Figure, FirstCorner, add_polygon, add_rectangle};
 pub use finished::{FinishedLength, finished_length};
 pub use formula_change::{FormulaChange, move_point_by};
 pub use fragment::{Fragment, FragmentKind, Outside, OutsideValue, copy};
+pub use grade::{
+    SizeShift, copy_rule, even_shifts, give_rule, jumps, mirror_rule, points_of_rule, rule_of,
+    rule_shifts, rules_of_sizes, set_rule_shift, ungrade,
+};
 pub use guide::{add_guide, move_guide, remove_guides};
 pub use marker::{
     add_marker, flip_pieces, lock_pieces, move_pieces, place_marker, place_pieces, remove_marker,

@@ -7,6 +7,7 @@ mod sample;
 mod construct;
 mod copy;
 mod formula_change;
+mod grade;
 mod idle;
 mod kept;
 mod notch;
