@@ -234,7 +234,7 @@ pub fn off(p: [f64; 2], ring: &[[f64; 2]]) -> f64 {
 }
 
 /// Longest time for a file (s); without optimisation four times as long.
-pub const MOST_SECONDS: f64 = if cfg!(debug_assertions) { 8.0 } else { 2.0 };
+pub const MAX_SECONDS: f64 = if cfg!(debug_assertions) { 8.0 } else { 2.0 };
 
 /// Time that this thread has had of a processor (s), where the system tells it; other tests run beside it.
 pub fn processor_seconds() -> Option<f64> {
