@@ -234,7 +234,7 @@ pub fn off(p: [f64; 2], ring: &[[f64; 2]]) -> f64 {
 }
 
 /// Longest time for a file (s); without optimisation four times as long.
-pub const MOST_SECONDS: f64 = if cfg!(debug_assertions) { 8.0 } else { 2.0 };
+pub const MAX_SECONDS: f64 = if cfg!(debug_assertions) { 8.0 } else { 2.0 };
 
 /// Time that this thread has had of a processor (s), where the system tells it; other tests run beside it.
 pub fn processor_seconds() -> Option<f64> {
@@ -252,3 +252,65 @@ pub fn timed<T>(task: impl FnOnce() -> T) -> (T, f64) {
         .map(|(end, start)| end - start);
     (found, seconds.unwrap_or(0.0))
 }
+
+/// A piece of a file in one size (mm).
+pub struct Truth {
+    pub piece: String,
+    pub size: String,
+    pub ring: Vec<[f64; 2]>,
+    /// Places of its notches.
+    pub notches: Vec<[f64; 2]>,
+    /// x of the fold, which vertices may lie on.
+    pub fold: Option<f64>,
+}
+
+/// Reads a file, writes it again, and holds every outline and notch to what the file says.
+pub fn held(bytes: &[u8], truths: &[Truth], options: &ReadOptions) -> Reading {
+    let reading = read(bytes, options, &[]).unwrap();
+    let mut pieces: Vec<&str> = truths.iter().map(|truth| truth.piece.as_str()).collect();
+    pieces.dedup();
+    let names: Vec<&str> = reading
+        .pattern
+        .panels
+        .iter()
+        .map(|panel| panel.name.as_str())
+        .collect();
+    assert_eq!(names, pieces);
+    let text = written(&reading.pattern, Format::DxfAama);
+    let blocks = blocks(&text);
+    assert_eq!(blocks.len(), truths.len());
+    for truth in truths {
+        let place = format!("{} {}", truth.piece, truth.size);
+        let block = blocks.iter().find(|block| {
+            block.label("Piece Name") == Some(&truth.piece)
+                && (block.label("Size") == Some(&truth.size) || truth.size.is_empty())
+        });
+        let block = block.expect(&place);
+        let outline = block.layer(1).next().unwrap();
+        for p in &truth.ring {
+            let on_fold = truth.fold.is_some_and(|x| (p[0] - x).abs() < 1e-3);
+            assert!(
+                on_fold || off(*p, outline) < NEAR,
+                "{place}: {p:?} is {} off",
+                off(*p, outline)
+            );
+        }
+        for p in &truth.notches {
+            let notches = block
+                .points
+                .iter()
+                .filter(|(layer, _)| matches!(layer, 4 | 80..=82));
+            let off = notches.map(|(_, q)| (p[0] - q[0]).hypot(p[1] - q[1]));
+            let off = off.fold(f64::INFINITY, f64::min);
+            assert!(off < 0.3, "{place}: the notch at {p:?} is {off} off");
+        }
+    }
+    reading
+}
+
+pub fn default_held(text: &str, truths: &[Truth]) -> Reading {
+    held(text.as_bytes(), truths, &ReadOptions::default())
+}
+
+/// Largest distance of a vertex from the outline that is written again (mm).
+pub const NEAR: f64 = 0.1;
