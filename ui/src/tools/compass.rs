@@ -107,7 +107,8 @@ pub static TWO: SlotTool = SlotTool {
             Some(distance) => distance,
             None => {
                 let evaluation = planning.evaluation();
-                let radius = evaluation.number(radius, Want::Length).unwrap_or(USUAL);
+                let radius = evaluation.number(radius, Want::Length);
+                let radius = radius.unwrap_or(USUAL).abs();
                 // The nearest distance at which both circles meet.
                 let (least, most) = ((way.norm() - radius).abs(), way.norm() + radius);
                 let value = rounded((met.at - second.at).norm(), STEP);

@@ -44,7 +44,7 @@ pub(super) struct Stretch {
     pub ends: [PointThing; 2],
     /// Name of the curve of the file; empty for straight stretches.
     pub name: String,
-    /// Its course for the base size (m).
+    /// The course for the base size (m).
     pub path: Path,
     /// Allowance of its own, where nodes give one.
     pub allowance: Option<Number>,

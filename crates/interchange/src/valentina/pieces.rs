@@ -107,7 +107,7 @@ fn piece(
             what: "loops of the outline".to_owned(),
             place: place.to_owned(),
             count: loops,
-            why: "it crosses itself there in the base size, and goes on from the crossing"
+            why: "it crosses or touches itself there in the base size, and goes on from there"
                 .to_owned(),
         });
     }

@@ -66,7 +66,7 @@ fn files_of_newer_versions_are_read_and_said() {
         if is_newer {
             assert!(reading.notes[0].contains(version));
         }
-        // What is not known is named.
+        // Tools that are not known are named.
         assert_eq!(reading.losses.len(), 1);
         assert!(reading.losses[0].what.contains("parallelCurve"));
     }

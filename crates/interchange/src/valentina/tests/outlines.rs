@@ -139,6 +139,28 @@ fn loops_of_an_outline_are_left_out_from_its_first_node_on() {
 }
 
 #[test]
+fn a_slit_of_an_outline_is_left_out() {
+    let corner = |id: u32, x: f64, y: f64| {
+        format!(
+            "<point type='single' id='{id}' name='N{id}' x='{x}' y='{}'/>",
+            -y
+        )
+    };
+    let tools: String = [
+        corner(20, 10.0, 5.0),
+        corner(21, 5.0, 5.0),
+        corner(22, 5.0, 2.0),
+        corner(23, 0.0, 5.0),
+    ]
+    .concat();
+    let nodes = [1, 2, 20, 21, 22, 21, 23].map(|id| ("Point", id, ""));
+    let reading = piece(&tools, &nodes);
+    check("slit", &reading, 50.0, 1);
+    let outline = reading.pattern.panels[0].outline().unwrap();
+    assert_eq!(outline.edges.len(), 5);
+}
+
+#[test]
 fn nodes_may_be_known_under_the_number_of_another_drawing_or_node() {
     let text = file(
         "",
