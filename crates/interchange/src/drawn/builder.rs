@@ -4,7 +4,7 @@
 //! one edge, straight or a spline through them. Edges of the sew line get the allowance that their distance to
 //! the cut line shows.
 
-use super::allowance::{Width, nearest, width};
+use super::allowance::{Width, distance, nearest, width};
 use super::corners::{corners, is_straight};
 use super::piece::{DrawnLine, DrawnNotch, DrawnPattern, DrawnPiece, Way};
 use super::spline;
@@ -14,8 +14,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::{
-    CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number, Operation,
-    OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
+    Corner, CurveRule, Edge, Fabric, FabricId, Knot, LineKind, Mark, Name, Notch, Number,
+    Operation, OperationKind, PanelBuilder, Pattern, PointId, PointRule, Size, SizeId,
 };
 
 /// Coordinates of two sizes that differ by less are one (m).
@@ -31,6 +31,10 @@ const AS_NEAR: f64 = 5e-5;
 const MAX_REACH: f64 = 0.06;
 /// Difference of the distances along an edge beyond which they may not be a width at all (m).
 const MAX_SPREAD: f64 = 0.003;
+/// Least turn of a corner at which a bevel is told from a mitre (rad): 30 degrees.
+const MIN_BEVEL: f64 = std::f64::consts::PI / 6.0;
+/// Largest difference of a bevel from the one that two widths give, as a share of the width.
+const NEAR_BEVEL: f64 = 0.02;
 /// Widths differ by as much from round ones as coordinates are rounded in files (m).
 const EXACT: f64 = 2e-5;
 /// Room between pieces that are laid side by side on the table (m).
@@ -394,8 +398,19 @@ impl Builder {
             });
         }
         drawing.panel.allowance = usual.into();
-        for (edge, width) in built.edges.iter_mut().zip(widths) {
+        let turns = corners.iter().map(|&k| turn(vertices, k));
+        let places = corners.iter().map(|&k| distance(vertices[k], cut_line));
+        let before = widths.iter().cycle().skip(widths.len().saturating_sub(1));
+        let at_corners = turns.zip(places).zip(before);
+        let edges = built.edges.iter_mut().zip(&widths);
+        for ((edge, &width), ((turn, place), &before)) in edges.zip(at_corners) {
             edge.allowance = (width != usual).then(|| width.into());
+            // A mitre comes no nearer to its corner than the allowance, a bevel does.
+            let bevel = width * (0.5 * turn).cos();
+            let is_bevel = turn > MIN_BEVEL && (place - bevel).abs() <= NEAR_BEVEL * width;
+            if is_bevel && (width - before).abs() <= NEAR_BEVEL * width {
+                edge.corner.kind = Corner::Bevel;
+            }
         }
     }
 
@@ -507,6 +522,15 @@ fn length_between(ring: &[Vec2], from: f64, to: f64) -> f64 {
         at = end;
     }
     length
+}
+
+/// The angle by which a closed line that runs counter-clockwise turns outwards at a vertex (rad); negative at one
+/// that turns inwards.
+fn turn(ring: &[Vec2], vertex: usize) -> f64 {
+    let count = ring.len();
+    let at = |k: usize| ring[(vertex + count + k) % count];
+    let (a, b) = (at(0) - at(count - 1), at(1) - at(0));
+    a.perp(&b).atan2(a.dot(&b))
 }
 
 /// A width rounded to a tenth of a millimetre where it is as near to one as coordinates are exact, else to a
