@@ -11,6 +11,7 @@ mod batch_commands;
 mod body_options;
 mod check_commands;
 mod convert_command;
+mod flatten_arguments;
 mod flatten_command;
 mod lab_commands;
 mod nest_arguments;
