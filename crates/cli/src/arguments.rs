@@ -7,7 +7,7 @@
 //! - [`crate::nest_commands`], [`crate::print_commands`], [`crate::lab_commands`]: markers, prints,
 //!   laboratory;
 //! - [`crate::batch_commands`]: commands as jobs of a batch;
-//! - [`crate::nest_arguments::Nest`], [`crate::print_arguments::Print`],
+//! - [`crate::nest_arguments::Nest`], [`crate::print_arguments::Print`], [`crate::flatten_arguments::Flatten`],
 //!   [`crate::body_options::BodyOptions`], [`crate::values`]: options of several values and of single
 //!   commands;
 //! - [`crate::arguments::Make::choices`], [`toile_session::Command`]: options as commands of a session;
@@ -20,11 +20,12 @@
 use crate::batch_arguments::{Batch, JobTask};
 use crate::body_options::{BodyOptions, StanceOptions};
 use crate::convert_arguments::Convert;
+use crate::flatten_arguments::Flatten;
 use crate::nest_arguments::Nest;
 use crate::print_arguments::Print;
 use crate::read_options::ReadArguments;
 use crate::seams_arguments::Seams;
-use crate::values::{blend, direction, export_format, one_size, panel_origin, share, sizes};
+use crate::values::{blend, export_format, one_size, panel_origin, sizes};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use toile_geometry::{Duration, Length};
@@ -462,48 +463,6 @@ pub struct Mesh {
     #[arg(long, value_name = "NAME", value_parser = one_size)]
     pub size: Option<String>,
     /// OBJ file to write (m).
-    #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
-}
-
-/// `toile flatten`.
-#[derive(Debug, Args)]
-pub struct Flatten {
-    /// The surface: a mesh (OBJ or PLY, m), with one outline unless --loop cuts a region out of it.
-    #[arg(required_unless_present = "body", conflicts_with = "body")]
-    pub mesh: Option<PathBuf>,
-    /// Or a body, as in `toile make --body`: woman, man, mean, dress-form, child-2, child-4, ... child-14, a mannequin file,
-    /// a file of measurements, FIGURE:FILE, or a mesh.
-    #[arg(long, value_name = "BODY")]
-    pub body: Option<String>,
-    /// File of a loop (JSON): places on the surface round the region to flatten, joined by shortest paths, and lines to cut.
-    #[arg(long = "loop", value_name = "FILE")]
-    pub loop_file: Option<PathBuf>,
-    /// Length of the edges that the region of a loop is meshed with. Default: a thirtieth of the side of a square as large, 2mm
-    /// to 12mm.
-    #[arg(long, value_name = "LENGTH", requires = "loop_file")]
-    pub edge: Option<Length>,
-    /// Direction of the grain in space, as in 0,1,0. Default: upwards.
-    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
-    pub grain: Option<[f64; 3]>,
-    /// Fabric: a name of the library, or a fabric file. Default: poplin.
-    #[arg(long, value_name = "NAME|FILE")]
-    pub fabric: Option<String>,
-    /// Most stretch on 99 % of the area, either way.
-    #[arg(long, value_name = "SHARE", default_value = "2%", value_parser = share)]
-    pub strain: f64,
-    /// Most darts.
-    #[arg(long, value_name = "COUNT", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=20))]
-    pub darts: u8,
-    /// Distance by which the surface is moved out to its front first.
-    #[arg(
-        long,
-        value_name = "LENGTH",
-        default_value = "0mm",
-        allow_hyphen_values = true
-    )]
-    pub ease: Length,
-    /// Pattern to write (NAME.toile.json).
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

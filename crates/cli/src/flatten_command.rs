@@ -1,6 +1,7 @@
 //! Runs `toile flatten`.
 
-use crate::arguments::{Flatten, body_command};
+use crate::arguments::body_command;
+use crate::flatten_arguments::Flatten;
 use crate::output::{Failure, Output, count};
 use serde_json::{Value, json};
 use toile_session::{Command, FlattenOptions, SurfaceSource, flatten_to_panel};

@@ -12,6 +12,7 @@ mod body_options;
 mod check_commands;
 mod convert_arguments;
 mod convert_command;
+mod flatten_arguments;
 mod flatten_command;
 mod lab_commands;
 mod nest_arguments;

@@ -81,6 +81,10 @@ pub fn next_dart(
         let grain = Grain::new(&trial.region, options.grain)?;
         let law = RestEnergy::new(&trial.region, options.law);
         let found = minimise(&law, &grain, &mut trial.places, SHORT_STEPS)?;
+        // Sides that overlap ask for a gusset: that is no dart.
+        if (trial.darts.last()).is_some_and(|dart| dart.overlaps(&trial.places)) {
+            return Ok(());
+        }
         if best.as_ref().is_none_or(|b| found.energy < b.0) {
             *best = Some((found.energy, trial, way.to_vec()));
         }

@@ -162,9 +162,9 @@ impl SplitMesh {
     /// A vertex at a place of a triangle by its weights: a corner if it is one, else a new one.
     pub fn vertex_at(&mut self, triangle: u32, weights: [f64; 3]) -> u32 {
         let corners = self.triangles[triangle as usize];
-        for k in 0..3 {
-            if weights[k] > 1.0 - SNAP {
-                return corners[k];
+        for (v, weight) in corners.into_iter().zip(weights) {
+            if weight > 1.0 - SNAP {
+                return v;
             }
         }
         for k in 0..3 {
