@@ -1,5 +1,5 @@
 //! Nests and grade rule tables in DXF: sizes by rules, written and read.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -253,8 +253,11 @@ fn shifts_of(table: &str) -> Vec<(u32, Vec<[f64; 2]>)> {
     paired.collect()
 }
 
+/// The number of a rule, and the place that it stands at.
+type Numbered = (u32, [f64; 2]);
+
 /// Vertices of the line on a layer of a block (mm), and the numbers of rules at places (mm).
-fn block_parts(block: &str, layer: &str) -> (Vec<[f64; 2]>, Vec<(u32, [f64; 2])>) {
+fn block_parts(block: &str, layer: &str) -> (Vec<[f64; 2]>, Vec<Numbered>) {
     let lines: Vec<&str> = block.lines().collect();
     let tags: Vec<(&str, &str)> = lines
         .chunks_exact(2)

@@ -6,6 +6,7 @@ use super::labels::Labels;
 use super::outlines::split;
 use super::placed::moved;
 use crate::{FormatError, Guess, Loss, ReadOption};
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
 /// Most pieces of a file, each size counted.
@@ -44,12 +45,17 @@ impl Pieces {
                 found
                     .losses
                     .push(Loss::at(&insert.block, "a piece put in", why));
-            } else if inserts.contains_key(&key) {
-                let why = "a piece is read where it is put in first";
-                let what = "a further place of a piece";
-                found.losses.push(Loss::at(&insert.block, what, why));
-            } else {
-                inserts.insert(key, insert);
+                continue;
+            }
+            match inserts.entry(key) {
+                Entry::Vacant(place) => {
+                    place.insert(insert);
+                }
+                Entry::Occupied(_) => {
+                    let why = "a piece is read where it is put in first";
+                    let what = "a further place of a piece";
+                    found.losses.push(Loss::at(&insert.block, what, why));
+                }
             }
         }
         let mut placed = Vec::with_capacity(drawing.blocks.len());
@@ -153,17 +159,14 @@ impl Pieces {
     fn loose(&mut self, drawing: &DxfDrawing, blocks: &[Block]) -> Result<(), FormatError> {
         // The cut layer of the markers that this program writes.
         if drawing.loose.iter().any(|entity| entity.layer == "CUT") {
-            let texts = drawing
+            let mut texts = drawing
                 .loose
                 .iter()
                 .filter_map(|entity| match &entity.drawn {
                     Drawn::Text { text, .. } => Some(text.trim()),
                     Drawn::Line { .. } | Drawn::Point { .. } => None,
                 });
-            let title = texts
-                .filter(|text| !text.is_empty())
-                .last()
-                .unwrap_or_default();
+            let title = texts.rfind(|text| !text.is_empty()).unwrap_or_default();
             let named = match title.is_empty() {
                 true => String::new(),
                 false => format!(" ({title})"),

@@ -131,6 +131,9 @@ struct Grader<'t> {
     followed: usize,
 }
 
+/// The lines of one kind of a piece.
+type LinesOf<'f> = &'f dyn Fn(&mut BlockPiece) -> &mut Vec<BlockLine>;
+
 impl Grader<'_> {
     /// A piece in all sizes.
     fn piece(&mut self, piece: &BlockPiece) -> Vec<BlockPiece> {
@@ -176,9 +179,7 @@ impl Grader<'_> {
                 own.turn_points.clear();
             }
         }
-        let mut put = |lines: &dyn Fn(&mut BlockPiece) -> &mut Vec<BlockLine>,
-                       number: usize,
-                       shifts: &[Shifts]| {
+        let mut put = |lines: LinesOf<'_>, number: usize, shifts: &[Shifts]| {
             for (size, own) in all.iter_mut().enumerate() {
                 if let Some(line) = lines(own).get_mut(number) {
                     let moved = line.points.iter_mut().zip(shifts);
@@ -187,10 +188,7 @@ impl Grader<'_> {
             }
         };
         put(&|own| &mut own.cut, 0, &outline);
-        let kinds: [(
-            &dyn Fn(&mut BlockPiece) -> &mut Vec<BlockLine>,
-            &[BlockLine],
-        ); 5] = [
+        let kinds: [(LinesOf<'_>, &[BlockLine]); 5] = [
             (&|own| &mut own.sew, &piece.sew),
             (&|own| &mut own.internal, &piece.internal),
             (&|own| &mut own.cutouts, &piece.cutouts),
