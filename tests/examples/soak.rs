@@ -37,6 +37,9 @@
 //!
 //! `soak events [COUNT]` makes so many random events (100000) on the window's tools and its session, from the shipped patterns
 //! and the empty document, and fails where one panics, damages the document, or it cannot be undone, done again and replayed.
+//!
+//! `soak damaged [COUNT]` reads so many damaged pattern files of every format (100000), and fails where one panics, takes more
+//! than 2 s, or is refused without its place and a remedy.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "soak/cloth.rs"]
@@ -555,8 +558,9 @@ fn main() -> ExitCode {
         Some((first, rest)) if first == "edits" => edits::edits(rest),
         Some((first, rest)) if first == "losses" => document::losses(rest),
         Some((first, rest)) if first == "events" => document::events(rest),
+        Some((first, rest)) if first == "damaged" => document::damaged(rest),
         _ => Err(
-            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers, soak rest, soak edits, soak losses, soak events"
+            "say what: soak nest [OPTIONS] INSTANCE.json..., soak hard, soak tangles, soak sizes, soak layers, soak rest, soak edits, soak losses, soak events, soak damaged"
                 .to_owned(),
         ),
     };

@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stdout)] // tests say what they skip
 
+pub mod damaged;
 pub mod edits;
 pub mod events;
 pub mod losses;

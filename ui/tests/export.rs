@@ -85,7 +85,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     let told = drafter.status();
     let verdict = "the garment hangs at rest";
     assert!(
-        told.contains("Exported 20 files") && told.contains(verdict),
+        told.contains("Exported 22 files") && told.contains(verdict),
         "{told}"
     );
 
@@ -111,7 +111,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     for files in [&mut window, &mut line] {
         assert!(files.remove("journal.jsonl").is_some());
     }
-    assert_eq!(window.len(), 18);
+    assert_eq!(window.len(), 20);
     for (name, bytes) in &line {
         assert!(window[name] == *bytes, "{name} differs");
     }
@@ -126,7 +126,7 @@ fn every_export_has_the_bytes_of_the_command_line() {
     drafter.key(Key::Enter);
     drafter.wait(|drafter| !exports(drafter));
     assert!(
-        drafter.status().contains("Exported 15 files"),
+        drafter.status().contains("Exported 17 files"),
         "{}",
         drafter.status()
     );

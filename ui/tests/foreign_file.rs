@@ -10,6 +10,7 @@ use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_geometry::Bounds2;
+use toile_pattern::Pattern;
 use toile_session::{Command, Format, Session, Silent, WriteOptions};
 
 /// A file that is dropped.
@@ -147,6 +148,8 @@ fn a_pattern_is_saved_as_dxf_with_what_that_leaves_out_told_before() {
     let read = session.project().pattern.clone();
     assert_eq!(read.panels.len(), before.panels.len());
     assert_eq!(read.sizes.len(), before.sizes.len());
+    let base = |pattern: &Pattern| pattern.base().map(|size| size.name.clone());
+    assert_eq!(base(&read), base(&before));
 }
 
 #[test]

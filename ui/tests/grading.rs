@@ -32,9 +32,9 @@ fn a_rule_is_given_typed_and_undone_exactly() {
     let steps = drafter.steps();
     assert_eq!(before.sizes.len(), 2);
     let [base, other] = [0, 1].map(|k| before.sizes[k].name.clone());
-    let corner = point(&drafter, "C");
+    let corner = point(&drafter, "A");
     let at = places(&drafter, corner);
-    drafter.click(drafter.part("Point C of draft"));
+    drafter.click(drafter.part("Point A of draft"));
     drafter.window.get_by_label("Grading").click();
     drafter.window.run();
     drafter.press("Give grade rule");
@@ -59,7 +59,7 @@ fn a_rule_is_given_typed_and_undone_exactly() {
     assert_eq!(drafter.pattern(), kept);
     drafter.key(Key::Escape);
     // The rule is copied to another corner, and mirrored there.
-    drafter.click(drafter.part("Point C of draft"));
+    drafter.click(drafter.part("Point A of draft"));
     drafter.shift_click(drafter.part("Point D of draft"));
     drafter.press("Copy grade rule");
     let copied = point(&drafter, "D");

@@ -344,11 +344,11 @@ fn a_rule_table_gives_the_shifts_of_the_blocks() {
             let off = outlines_apart(&a, &b);
             assert!(off < 3e-5, "{size}: {off}");
         }
-        // With blocks of all sizes these hold, and the table is told to be unused.
+        // With blocks of all sizes these hold, and that the table is not needed is said.
         let both = with(text.as_bytes(), &table).unwrap();
         assert!(both.pattern.says_the_same(&whole.pattern));
-        let unused = both.losses.iter().find(|loss| loss.what == "grade rules");
-        assert!(unused.unwrap().why.contains("blocks of its sizes"));
+        let said = both.guesses.iter().find(|guess| guess.what == "sizes");
+        assert!(said.unwrap().because.contains("blocks of its sizes"));
     }
 }
 

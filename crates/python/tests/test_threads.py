@@ -86,8 +86,11 @@ def runnable() -> int:
     """Number of this process's threads besides this one that run, or wait for a processor alone."""
     own, count = threading.get_native_id(), 0
     for task in os.listdir("/proc/self/task"):
-        with open(f"/proc/self/task/{task}/stat") as file:
-            state = file.read().rpartition(")")[2].split()[0]
+        try:
+            with open(f"/proc/self/task/{task}/stat") as file:
+                state = file.read().rpartition(")")[2].split()[0]
+        except OSError:
+            continue  # The thread has ended meanwhile.
         count += state == "R" and int(task) != own
     return count
 

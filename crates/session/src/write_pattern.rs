@@ -147,10 +147,12 @@ fn drafts(
             ))),
         };
     }
-    let asked = match sizes {
+    let mut asked = match sizes {
         None => vec![(project.size.clone(), 1)],
         Some(sizes) => selected(sizes, &project.pattern)?,
     };
+    let base = project.pattern.base().map(|size| &size.name);
+    asked.sort_by_key(|(size, _)| size.as_ref() != base);
     if asked.len() > 1 && !format.holds_sizes() {
         return Err(SessionError::Conflict(format!(
             "files of {} hold one size: name one with --size",

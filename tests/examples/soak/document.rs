@@ -1,5 +1,6 @@
 //! Random changes and events on documents.
 
+use toile_tests::damaged::FILES;
 use toile_tests::events::EVENTS;
 use toile_tests::losses::CHANGES;
 
@@ -11,6 +12,13 @@ pub fn losses(arguments: &[String]) -> Result<(), String> {
 /// Random events on the window's tools, a hundred thousand or as many as are asked.
 pub fn events(arguments: &[String]) -> Result<(), String> {
     runs(arguments, (100_000, EVENTS), toile_tests::events::events)
+}
+
+/// Damaged pattern files of every format, a hundred thousand or as many as are asked, each read within its time.
+pub fn damaged(arguments: &[String]) -> Result<(), String> {
+    runs(arguments, (100_000, FILES), |seed, _| {
+        toile_tests::damaged::damaged(seed, true)
+    })
 }
 
 /// Runs of so many changes each, by one seed after another, until there were as many changes as

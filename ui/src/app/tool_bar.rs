@@ -27,9 +27,9 @@ use egui::{Button, RichText, Ui, pos2, vec2};
 /// Widths of the tool bar: icons only, and with names and keys (pixels).
 const WIDTHS: [f32; 2] = [44.0, 186.0];
 /// Least and largest height of a button (pixels).
-const HEIGHTS: [f32; 2] = [16.0, 28.0];
+const HEIGHTS: [f32; 2] = [14.0, 28.0];
 /// Height of the name of a group (pixels).
-const GROUP: f32 = 15.0;
+const GROUP: f32 = 13.0;
 /// Largest side of an icon (pixels).
 const SIGN: f32 = 20.0;
 /// Font size of the name of a group (pixels).

@@ -133,7 +133,7 @@ impl ToileApp {
                 })
             });
             let sign = match own.is_jump {
-                true => RichText::new("\u{2195}").color(palette.warning),
+                true => RichText::new("!").color(palette.warning),
                 false => RichText::new(" "),
             };
             let sign = ui.label(sign);

@@ -4,7 +4,7 @@ use super::block_piece::BlockPiece;
 use super::graded_blocks::{Grading, graded};
 use super::labels::Labels;
 use super::rule_table::RuleTable;
-use crate::{Companion, FormatError, Guess, Loss};
+use crate::{Companion, FormatError, Guess, Loss, ReadOption};
 use toile_geometry::Vec2;
 use toile_pattern::DisplayUnit;
 
@@ -65,12 +65,13 @@ pub(super) fn with_table(
     sizes.sort_unstable();
     sizes.dedup();
     if sizes.len() > 1 {
-        let why = "the file has blocks of its sizes, which hold against the table";
         return Ok(SizedPieces {
             pieces,
-            losses: vec![Loss {
-                count: table.rules.len(),
-                ..Loss::at(file, "grade rules", why)
+            guesses: vec![Guess {
+                what: "sizes",
+                chosen: "those of the blocks".to_owned(),
+                because: format!("the file has blocks of its sizes, and {file} is not needed"),
+                option: ReadOption::With,
             }],
             ..SizedPieces::default()
         });
