@@ -24,7 +24,21 @@ fn places(drafter: &Drafter, id: PointId) -> Vec<[f64; 2]> {
 
 #[test]
 fn a_rule_is_given_typed_and_undone_exactly() {
-    let mut drafter = Drafter::with_panel("graded");
+    let mut drafter = Drafter::new();
+    drafter.press("New pattern");
+    drafter.enter("Name", "graded");
+    drafter.chord(Modifiers::SHIFT, Key::L);
+    for (x, y) in [
+        (0.0, 0.0),
+        (0.2, 0.02),
+        (0.25, 0.3),
+        (-0.03, 0.26),
+        (0.0, 0.0),
+    ] {
+        drafter.click(drafter.place(x, y));
+    }
+    drafter.key(Key::Escape);
+    drafter.key(Key::Escape);
     drafter.key(Key::F8);
     drafter.press("Add size");
     drafter.press("Add size");
@@ -87,7 +101,8 @@ fn a_rule_is_given_typed_and_undone_exactly() {
     while drafter.steps() > steps {
         drafter.chord(Modifiers::COMMAND, Key::Z);
     }
-    assert_eq!(drafter.pattern(), before);
+    // The counter of ids alone goes on.
+    assert!(drafter.pattern().says_the_same(&before));
     let field = format!("Rule 1 across in {other}");
     assert!(drafter.window.query_by_label(&field).is_none());
 }
