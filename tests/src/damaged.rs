@@ -87,9 +87,12 @@ fn sound(format: Format) -> Result<Vec<u8>, String> {
     Ok(first.ok_or("nothing was written")?.bytes)
 }
 
+/// A file of each format.
+type Files = Vec<(Format, Vec<u8>)>;
+
 /// Sound files of all formats.
 fn all_sound() -> Result<&'static [(Format, Vec<u8>)], String> {
-    static FILES: OnceLock<Result<Vec<(Format, Vec<u8>)>, String>> = OnceLock::new();
+    static FILES: OnceLock<Result<Files, String>> = OnceLock::new();
     let made = FILES.get_or_init(|| {
         let all = Format::all().iter();
         all.map(|&format| Ok((format, sound(format)?))).collect()

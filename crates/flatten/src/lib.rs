@@ -3,7 +3,7 @@
 //!
 //! [`flatten()`] does all of it: [`Region`] checks that the surface can be flattened, [`conformal`], [`tutte`] and [`arap`]
 //! give a start, [`RestEnergy`] and [`minimise`] the shape of least energy, [`dart`] cuts. [`cut_out`] takes a region out of
-//! any surface along shortest paths, and [`flatten_surface`] flattens it.
+//! any surface along shortest paths, and [`flatten_surface()`] flattens it.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod arap;

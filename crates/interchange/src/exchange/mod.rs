@@ -7,7 +7,7 @@
 //! # Decided with
 //! - [`crate::file_kind::FileKind`]: what a file is, by its content;
 //! - [`crate::exchange::format::Format`]: formats, their words and endings;
-//! - [`crate::exchange::content::Content`], [`crate::exchange::contents`]: what a document holds, and which format
+//! - [`crate::exchange::content::Content`], [`mod@crate::exchange::contents`]: what a document holds, and which format
 //!   has a place for it;
 //! - [`crate::native`], [`crate::garmentcode`], [`crate::svg`], [`crate::dxf`], [`crate::valentina`]: readers and writers of the formats.
 

@@ -3,7 +3,7 @@
 //! # Decided with
 //! - [`crate::grade_rule`]: rules as variables, and the points that they move;
 //! - [`crate::plan`] (`moving.rs`, `added`): a drag moves a graded point alike in all sizes;
-//! - [`crate::evaluate::numbers`]: values that a size has of its own.
+//! - [`crate::evaluate`] (`numbers.rs`): values that a size has of its own.
 //!
 //! In the window: its commands (`app/grading.rs`), the table of rules (`tables/grade_rules.rs`).
 
