@@ -67,6 +67,16 @@ def wait(words, ask):
     raise Fault(f"{words}: not within {PATIENCE:.0f} s")
 
 
+def end(process):
+    """Ends a process, by force where it takes long."""
+    process.terminate()
+    try:
+        process.wait(5)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+
+
 class Screen:
     """A display in memory that is read as a file (X11's XWD format)."""
 
@@ -86,8 +96,7 @@ class Screen:
         self.name = f":{number}"
 
     def close(self):
-        self.server.terminate()
-        self.server.wait()
+        end(self.server)
 
     def picture(self):
         return self.file.read_bytes()
@@ -155,18 +164,24 @@ class Window:
             self.act("key", "F9", must="the list of findings is shown and hidden")
 
     def close(self):
-        self.process.terminate()
-        self.process.wait()
+        end(self.process)
 
     def xdotool(self, *words):
-        done = subprocess.run(["xdotool", *(str(word) for word in words)], env=self.environment,
-                              capture_output=True, text=True)
+        try:
+            done = subprocess.run(["xdotool", *(str(word) for word in words)], env=self.environment,
+                                  capture_output=True, text=True, timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            raise Fault(f"xdotool {words}: not within {PATIENCE:.0f} s") from None
         return done.stdout.strip() if done.returncode == 0 else ""
 
-    def search(self, title):
+    def lives(self):
+        """Complains once the window has ended."""
         if self.process.poll() is not None:
             self.log.seek(0)
             raise Fault(f"the window has ended: {self.log.read().strip()}")
+
+    def search(self, title):
+        self.lives()
         return self.xdotool("search", "--onlyvisible", "--name", title).split("\n")[0]
 
     def titled(self, pattern):
@@ -183,6 +198,7 @@ class Window:
         patience = PATIENCE if must else ANSWERS * self.pace * self.slowest
 
         def ask():
+            self.lives()
             return self.screen.picture() != before or time.monotonic() - begun > patience
 
         wait(must or "an answer", ask)
@@ -389,7 +405,10 @@ def replay(window, record, folder, pace):
     """Gives a window the inputs of a record, one after another at a pace; says how many."""
     window.pace = pace
     lines = [line.replace("{folder}", str(folder)) for line in record.read_text(encoding="utf-8").splitlines()]
-    for line in lines:
+    begun = time.monotonic()
+    for k, line in enumerate(lines):
+        if k % 100 == 0:
+            print(f"input {k} of {len(lines)}, {time.monotonic() - begun:.0f} s", flush=True)
         kind, rest = line.split(" ", 1)
         if kind == "click":
             window.click([float(word) for word in rest.split()])
@@ -452,7 +471,7 @@ def main(arguments):
     for needed in (program, toile, *records):
         if not needed.is_file():
             raise Fault(f"{needed} is not built")
-    print(on_display(program, skirt(toile)))
+    print(on_display(program, skirt(toile)), flush=True)
     for record in records:
         fast, slow = PACES
         try:

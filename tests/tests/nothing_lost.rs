@@ -96,6 +96,8 @@ fn what_a_document_holds_is_back_or_named_with_its_number() {
             }
         }
     }
+    let written = Format::all().iter().filter(|of| of.is_written());
+    assert_eq!(tried.len(), written.count());
     assert!(tried.values().all(|&count| count > 150), "{tried:?}");
     assert!(
         faults.is_empty(),

@@ -167,6 +167,29 @@ fn dropped_measurements_dress_the_wearer_and_a_dropped_fabric_is_cut() {
     let project = drafter.window.state().session().project();
     assert!(!project.body.is_of_pattern(), "{}", drafter.status());
     assert_eq!(drafter.pattern(), pattern);
+
+    let fabric = folder.path().join("twill.json");
+    std::fs::write(&fabric, r#"{"toile":1,"kind":"fabric","name":"twill"}"#).unwrap();
+    drop_files(&mut drafter, &[&fabric]);
+    let project = drafter.window.state().session().project();
+    assert!(project.fabric.is_some(), "{}", drafter.status());
+}
+
+#[test]
+fn the_bar_goes_once_the_pattern_is_saved_to_a_file_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = t_shirt_dxf(folder.path());
+    let mut drafter = Drafter::new();
+    drop_files(&mut drafter, &[&file]);
+    // What is typed wrong is told, and what is right then is taken.
+    drafter.enter("Sew line inside by", "wide");
+    drafter.enter("Sew line inside by", "5mm");
+    let bar = |drafter: &Drafter| drafter.window.query_by_label("Read as DXF-AAMA").is_some();
+    assert!(bar(&drafter), "{}", drafter.status());
+    drafter.chord(Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    let saved = folder.path().join("own.toile.json");
+    drafter.enter("File", &saved.display().to_string());
+    assert!(saved.exists() && !bar(&drafter), "{}", drafter.status());
 }
 
 #[test]

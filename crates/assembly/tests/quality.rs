@@ -137,3 +137,29 @@ fn internal_lines_are_edges_of_the_mesh() {
     }
     assert!((length - 0.05f64.sqrt()).abs() < 1e-9, "{length}");
 }
+
+#[test]
+fn internal_lines_that_leave_the_piece_crease_what_lies_inside() {
+    let outline = polygon(&[[0.0, 0.0], [0.3, 0.0], [0.3, 0.3], [0.0, 0.3]]);
+    let mut cloth = piece(0, "lined", outline, Worn::Automatic);
+    let line = |number, ends: [[f64; 2]; 2]| PieceLine {
+        name: toile_pattern::Name::Drawn(LineId(number)),
+        curves: vec![Curve::Line {
+            start: ends[0].into(),
+            end: ends[1].into(),
+        }],
+    };
+    cloth
+        .internal_lines
+        .push(line(0, [[-0.1, 0.1], [0.4, 0.1]]));
+    cloth.internal_lines.push(line(1, [[0.5, 0.1], [0.6, 0.1]]));
+    cloth
+        .internal_lines
+        .push(line(2, [[0.3, 0.05], [0.3, 0.25]]));
+    let draft = draft(vec![cloth], vec![]);
+    check(&draft, 0.01);
+    let mesh = &mesh_pieces(&draft, 0.01).unwrap().pieces[0];
+    assert!((mesh.area() - 0.09).abs() < 1e-12);
+    let on_line = mesh.points.iter().filter(|p| (p.y - 0.1).abs() < 1e-12);
+    assert!(on_line.count() > 25);
+}

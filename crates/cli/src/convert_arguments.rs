@@ -11,7 +11,8 @@ use toile_session::{Format, PanelOrigin, SizeSelection};
 pub struct Convert {
     /// The pattern to read; its format is seen from its content.
     pub input: PathBuf,
-    /// The file to write; its ending says the format: NAME.toile.json, or NAME.json for GarmentCode.
+    /// The file to write; its ending says the format: NAME.toile.json, NAME.json (GarmentCode), NAME.svg, NAME.dxf (DXF-AAMA, or
+    /// DXF-ASTM with --to dxf-astm).
     pub output: PathBuf,
     /// Format to write, in place of the one that the name ends in.
     #[arg(long, value_name = "FORMAT", value_parser = word::<Format>())]

@@ -5,7 +5,7 @@ use crate::corner::STRAIGHT;
 use crate::ring::{FLATNESS, Ring};
 use crate::trace::{Sides, Traced};
 use crate::{CutRing, Finding};
-use toile_geometry::{Polygon, Vec2, point_segment_distance};
+use toile_geometry::{Bounds2, EdgeTree, Location, Polygon, Vec2};
 
 /// Shortest span that is reported (m): flattening makes shorter ones at bends of tight curves.
 const SHORTEST: f64 = 1e-4;
@@ -130,9 +130,8 @@ fn is_inner(ring: &Ring, edge: usize) -> bool {
 /// The seam line of a ring and the cut line made for it.
 struct Piece<'a> {
     ring: &'a Ring,
-    cut: Polygon,
     /// Segments of the cut line.
-    segments: Vec<[Vec2; 2]>,
+    cut: EdgeTree,
 }
 
 impl<'a> Piece<'a> {
@@ -145,28 +144,34 @@ impl<'a> Piece<'a> {
         };
         Self {
             ring,
-            segments: cut.edges().collect(),
-            cut,
+            cut: EdgeTree::of(&cut),
         }
     }
 
     fn is_cloth(&self, p: Vec2) -> bool {
-        self.cut.contains(p) == (self.ring.number == 0)
+        (self.cut.locate(p) != Location::Outside) == (self.ring.number == 0)
     }
 
-    /// Width of the cloth beside a point of the seam line, measured along `normal` (m); infinite if the cut
-    /// line is not met.
-    fn width(&self, p: Vec2, normal: Vec2) -> f64 {
-        let hit = |&[a, b]: &[Vec2; 2]| {
+    /// Calls `visit` for the segments of the cut line whose boxes meet the box of a segment.
+    fn meeting(&self, [from, to]: [Vec2; 2], visit: &mut dyn FnMut([Vec2; 2])) {
+        let near = Bounds2::of([from, to]).grown(ROUNDING);
+        let edges = self.cut.edges();
+        self.cut
+            .visit(&mut |bounds| bounds.meets(&near), &mut |k| visit(edges[k]));
+    }
+
+    /// Width of the cloth beside a point of the seam line, measured along `normal`, at most `most` (m).
+    fn width(&self, p: Vec2, normal: Vec2, most: f64) -> f64 {
+        let mut width = most;
+        self.meeting([p - normal * SHORTEST, p + normal * most], &mut |[a, b]| {
             let (from, to) = (normal.perp(&(a - p)), normal.perp(&(b - p)));
             let crosses = (from <= 0.0) != (to <= 0.0);
             let along = (a + (b - a) * (from / (from - to)) - p).dot(&normal);
-            (crosses && along > -SHORTEST).then_some(along.max(0.0))
-        };
-        self.segments
-            .iter()
-            .filter_map(hit)
-            .fold(f64::INFINITY, f64::min)
+            if crosses && along > -SHORTEST {
+                width = width.min(along.max(0.0));
+            }
+        });
+        width
     }
 
     /// Ends and dividing points of a span of a chord (m). The span is divided where the chord's line, moved
@@ -177,11 +182,14 @@ impl<'a> Piece<'a> {
         let start = chord.from + chord.normal * width;
         let along = chord.along();
         let mut parts = vec![from, to];
-        parts.extend(self.segments.iter().filter_map(|&[a, b]| {
+        let moved = [start + along * from, start + along * to];
+        self.meeting(moved, &mut |[a, b]| {
             let (p, q) = (along.perp(&(a - start)), along.perp(&(b - start)));
             let at = (a + (b - a) * (p / (p - q)) - start).dot(&along);
-            ((p <= 0.0) != (q <= 0.0) && at > from && at < to).then_some(at)
-        }));
+            if (p <= 0.0) != (q <= 0.0) && at > from && at < to {
+                parts.push(at);
+            }
+        });
         parts.sort_by(f64::total_cmp);
         parts
     }
@@ -196,9 +204,8 @@ impl<'a> Piece<'a> {
         let least = match swallowed {
             true => width,
             false => span
-                .map(|t| self.width(at(t), chord.normal))
-                .into_iter()
-                .fold(width, f64::min),
+                .iter()
+                .fold(width, |least, &t| self.width(at(t), chord.normal, least)),
         };
         Gap {
             edge: chord.edge,
@@ -218,8 +225,7 @@ impl<'a> Piece<'a> {
 
     /// Distance of a point from the cut line (m).
     fn depth(&self, p: Vec2) -> f64 {
-        let distances = self.segments.iter().map(|&s| point_segment_distance(p, s));
-        distances.fold(f64::INFINITY, f64::min)
+        self.cut.point_distance(p)
     }
 }
 

@@ -3,7 +3,9 @@
 //! Consecutive edges lie close together, so the tree halves the outline's own order: building it
 //! is linear and needs no sorting.
 
-use crate::{Bounds2, Polygon, Vec2};
+use crate::polygon::{RayHit, crosses_ray};
+use crate::{Bounds2, Location, Polygon, Vec2};
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
 const LEAF: usize = 4;
@@ -68,6 +70,41 @@ impl EdgeTree {
                 None => stack.extend([2 * node + 2, 2 * node + 1]),
             }
         }
+    }
+
+    /// Where a point lies in the region that the edges bound, by the even-odd rule. Exact, as [`Polygon::locate`] is.
+    pub fn locate(&self, point: Vec2) -> Location {
+        let (mut inside, mut is_on) = (false, false);
+        let mut near = |bounds: &Bounds2| {
+            bounds.max.x >= point.x && bounds.min.y <= point.y && bounds.max.y >= point.y
+        };
+        self.visit(&mut near, &mut |k| {
+            let [a, b] = self.edges[k];
+            match crosses_ray(a, b, point) {
+                RayHit::On => is_on = true,
+                RayHit::Crossed => inside = !inside,
+                RayHit::Missed => {}
+            }
+        });
+        match (is_on, inside) {
+            (true, _) => Location::Boundary,
+            (false, true) => Location::Inside,
+            (false, false) => Location::Outside,
+        }
+    }
+
+    /// Distance from a point to the nearest edge (m); infinite without edges.
+    pub fn point_distance(&self, point: Vec2) -> f64 {
+        let least = Cell::new(f64::INFINITY);
+        let here = Bounds2::of([point]);
+        self.visit(
+            &mut |bounds| bounds.distance(&here) < least.get(),
+            &mut |k| {
+                let distance = point_segment_distance(point, self.edges[k]);
+                least.set(least.get().min(distance));
+            },
+        );
+        least.get()
     }
 
     /// Calls `visit` for every pair of an edge here and an edge there whose boxes, moved apart by
@@ -224,6 +261,22 @@ mod tests {
         let point = || (-1.0..1.0f64, -1.0..1.0f64).prop_map(|(x, y)| Vec2::new(x, y));
         let one = (point(), point()).prop_map(|(p, d)| [p, p + d * 0.3]);
         prop::collection::vec(one, 0..count)
+    }
+
+    proptest! {
+        #[test]
+        fn places_of_points_equal_brute_force(
+            ring in prop::collection::vec((-4..5i32, -4..5i32), 0..40),
+            point in (-5..6i32, -5..6i32),
+        ) {
+            let at = |(x, y): (i32, i32)| Vec2::new(f64::from(x), f64::from(y));
+            let polygon = Polygon::new(ring.into_iter().map(at).collect());
+            let tree = EdgeTree::of(&polygon);
+            let point = at(point);
+            prop_assert_eq!(tree.locate(point), polygon.locate(point));
+            let least = polygon.edges().map(|edge| point_segment_distance(point, edge));
+            prop_assert_eq!(tree.point_distance(point), least.fold(f64::INFINITY, f64::min));
+        }
     }
 
     proptest! {

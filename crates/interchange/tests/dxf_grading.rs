@@ -11,7 +11,7 @@ use toile_interchange::{
 };
 use toile_measure::Measurements;
 use toile_pattern::{
-    Draft, Evaluation, GradeRule, Number, Pattern, PointId, PointRule, Wearer, plan,
+    Draft, Evaluation, GradeRule, Number, Pattern, PointId, PointRule, Severity, Wearer, plan,
 };
 
 fn shipped(name: &str) -> Pattern {
@@ -169,6 +169,12 @@ fn a_nest_read_written_and_read_again_has_its_corners_and_its_document_stays_sma
             read(bytes, &ReadOptions::default(), &[]).unwrap().pattern
         };
         let once = read_back(&pattern);
+        for size in &once.sizes {
+            let evaluation = in_size(&once, Some(&size.name));
+            let errors = evaluation.check();
+            let error = errors.iter().find(|d| d.severity == Severity::Error);
+            assert_eq!(error, None, "{name}");
+        }
         let twice = read_back(&once);
         let corners = |pattern: &Pattern, size: &str| -> Vec<(String, Vec<Vec2>)> {
             let sized = in_size(pattern, Some(size));
@@ -182,7 +188,7 @@ fn a_nest_read_written_and_read_again_has_its_corners_and_its_document_stays_sma
             let [a, b] = [&once, &twice].map(|one| corners(one, &size.name));
             assert_eq!(a.len(), b.len());
             for ((panel, own), (_, other)) in a.iter().zip(&b) {
-                // A vertex of a curve that is kept as chords is a corner the second time.
+                // Where a curve was kept as chords, the end of a chord is a corner the second time.
                 assert!(own.len() <= other.len(), "{name}, {panel}");
                 for p in own {
                     let off = other.iter().map(|q| (q - p).norm());

@@ -171,20 +171,22 @@ fn a_sew_line_that_no_allowance_explains_is_a_line_inside() {
 
 #[test]
 fn smooth_curves_that_would_cross_give_way_to_chords() {
-    // A slit of 0.4 mm between two edges whose splines would bulge into each other.
-    let slit = [
+    // A slit between a curve, which bulges beyond its vertices, and a straight edge 0.02 mm beside these.
+    let ring = vec![
+        [0.0, 0.0],
+        [0.0, 300.0],
         [200.0, 300.0],
-        [203.0, 200.0],
-        [200.2, 100.0],
-        [203.0, 20.0],
-        [200.0, 0.0],
+        [203.0, 210.0],
+        [203.0, 190.0],
+        [200.0, 100.0],
+        [201.0, 0.0],
+        [203.02, 10.0],
+        [203.02, 300.0],
+        [400.0, 300.0],
+        [400.0, -50.0],
+        [0.0, -50.0],
     ];
-    let mut ring = vec![[0.0, 0.0], [0.0, 300.0]];
-    ring.extend(slit);
-    let beside: Vec<[f64; 2]> = slit.iter().rev().map(|p| [p[0] + 0.4, p[1]]).collect();
-    ring.extend(&beside[1..]);
-    ring.extend([[400.0, 300.0], [400.0, -50.0], [0.0, -50.0]]);
-    let turns = [0, 1, 2, 6, 10, 11, 12, 13].map(|k: usize| point(2, ring[k], &[]));
+    let turns = [0, 1, 2, 6, 7, 8, 9, 10, 11].map(|k: usize| point(2, ring[k], &[]));
     let mut file = File::default();
     file.style += &words("Units: METRIC");
     let parts = [&[line(1, &ring, true, &[])], turns.as_slice()].concat();
@@ -196,6 +198,9 @@ fn smooth_curves_that_would_cross_give_way_to_chords() {
         notches: Vec::new(),
         fold: None,
     };
+    let reading = read(file.text().as_bytes(), &ReadOptions::default(), &[]).unwrap();
+    let told = |what: &str| reading.losses.iter().any(|loss| loss.what == what);
+    assert!(told("smoothness of an outline"), "{:?}", reading.losses);
     default_held(&file.text(), &[truth]);
 }
 

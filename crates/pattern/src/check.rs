@@ -481,13 +481,20 @@ impl PieceCheck<'_> {
                 .into_iter()
                 .find(|point| !segments.holds(*point, LINE_TOLERANCE));
             if let Some(point) = outside {
-                let words = format!(
-                    "internal line {name} is outside the panel at x = {:.1} cm, y = {:.1} cm",
+                let message = format!(
+                    "panel {:?}: internal line {name} leaves the panel at x = {:.1} cm, y = {:.1} cm; it is drawn there, but no cloth has it",
+                    self.piece.name,
                     point.x * 100.0,
                     point.y * 100.0
                 );
-                let hint = "move its points inside the panel";
-                self.error(Code::LineOutside, place, &words, hint);
+                let hint = "move its points inside the panel if the cloth should have all of it";
+                self.diagnostics.push(Diagnostic::new(
+                    Severity::Note,
+                    Code::LineOutside,
+                    place,
+                    message,
+                    hint,
+                ));
                 return;
             }
         }

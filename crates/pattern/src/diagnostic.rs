@@ -72,7 +72,7 @@ pub enum Code {
     HoleOutside,
     /// The fold line is not a straight edge of the outline.
     BadFold,
-    /// An internal line reaches outside its panel.
+    /// An internal line reaches outside its panel: the cloth has what lies inside.
     LineOutside,
     /// A dart is wider than its edge, or overlaps another.
     DartTooWide,

@@ -34,6 +34,14 @@ pub struct Graded {
     pub by: Vec2,
 }
 
+/// The number of the rule whose variable along an axis, `_x` or `_y`, has a name. Numbers with leading zeros or a sign
+/// name no rule.
+fn number_of(name: &str, axis: &str) -> Option<u32> {
+    let digits = name.strip_prefix("grade_")?.strip_suffix(axis)?;
+    let number: u32 = digits.parse().ok()?;
+    ((1..=MAX_GRADE_RULE).contains(&number) && number.to_string() == digits).then_some(number)
+}
+
 impl GradeRule {
     /// The names of a rule's variables.
     pub fn names(number: u32) -> [String; 2] {
@@ -54,13 +62,8 @@ impl GradeRule {
     pub fn all(pattern: &Pattern) -> Vec<Self> {
         let numbered = |axis: &str| -> std::collections::BTreeMap<u32, VariableId> {
             let all = pattern.variables.iter();
-            let own = all.filter_map(|variable| {
-                let rest = variable.name.strip_prefix("grade_")?;
-                let digits = rest.strip_suffix(axis)?;
-                let number: u32 = digits.parse().ok()?;
-                // A number with leading zeros or a sign is no name of a rule.
-                (number.to_string() == digits).then_some((number, variable.id))
-            });
+            let own =
+                all.filter_map(|variable| Some((number_of(&variable.name, axis)?, variable.id)));
             own.collect()
         };
         let upwards = numbered("_y");
@@ -71,18 +74,15 @@ impl GradeRule {
         both.collect()
     }
 
-    /// The smallest number above those of all rules.
-    pub fn free_number(pattern: &Pattern) -> u32 {
-        let is_taken = |number: u32| {
-            let names = Self::names(number);
-            names
-                .iter()
-                .any(|name| pattern.variable_named(name).is_some())
+    /// Numbers that no rule has: those above all rules, then those between.
+    pub fn free_numbers(pattern: &Pattern) -> impl Iterator<Item = u32> {
+        let is_free = |number: &u32| {
+            let names = Self::names(*number);
+            let mut names = names.iter();
+            names.all(|name| pattern.variable_named(name).is_none())
         };
         let last = Self::all(pattern).last().map_or(0, |rule| rule.number);
-        (last.saturating_add(1)..)
-            .find(|&number| !is_taken(number))
-            .unwrap_or(MAX_GRADE_RULE)
+        (last + 1..=MAX_GRADE_RULE).chain(1..last).filter(is_free)
     }
 
     /// A new rule and its variables, with their ids. Sizes without a shift stand for no shift.
@@ -123,8 +123,7 @@ impl GradeRule {
         let [x, y] = [variable_of(x)?, variable_of(y)?];
         let number = |id: VariableId, axis: &str| -> Option<u32> {
             let variable = pattern.variables.iter().find(|known| known.id == id)?;
-            let rest = variable.name.strip_prefix("grade_")?;
-            rest.strip_suffix(axis)?.parse().ok()
+            number_of(&variable.name, axis)
         };
         let own = number(x.0, "_x")?;
         (number(y.0, "_y")? == own).then_some(Graded {

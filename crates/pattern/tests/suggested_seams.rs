@@ -14,9 +14,14 @@ use toile_pattern::{
     Draft, Evaluation, Mark, Name, PanelId, Pattern, PieceEdge, Seam, SeamOrigin, Span, WornRule,
 };
 
-/// Share of the sewn edges whose partner must be the first candidate, and among three candidates.
-const FIRST: f64 = 0.65;
-const AMONG_THREE: f64 = 0.80;
+/// Least shares of the sewn edges whose partner is the first candidate, and among three candidates: with all shared
+/// patterns just below what is measured (docs/methods/seams-suggested.md), else for those that ship alone.
+fn floors(edges: usize, measured: [f64; 2]) -> [f64; 2] {
+    match edges > 400 {
+        true => measured.map(|share| share - 0.02),
+        false => [0.65, 0.80],
+    }
+}
 
 fn shared() -> Option<PathBuf> {
     let named = std::env::var_os("TOILE_SHARED").map(PathBuf::from);
@@ -224,12 +229,13 @@ fn partners_are_found_for_garments_whose_seams_were_taken_away() {
     }
     println!("together: {total:?}");
     assert!(total.edges >= 60, "{total:?}");
+    let [first, three] = floors(total.edges, [0.84, 0.96]);
     assert!(
-        total.first as f64 >= FIRST * total.edges as f64,
+        total.first as f64 >= first * total.edges as f64,
         "{total:?}"
     );
     assert!(
-        total.three as f64 >= AMONG_THREE * total.edges as f64,
+        total.three as f64 >= three * total.edges as f64,
         "{total:?}"
     );
     // Most of what is accepted unseen is right.
@@ -245,12 +251,13 @@ fn partners_are_found_without_places_in_space() {
         total += rates(name, pattern, &unplaced(pattern, true));
     }
     println!("without places: {total:?}");
+    let [first, three] = floors(total.edges, [0.81, 0.94]);
     assert!(
-        total.first as f64 >= FIRST * total.edges as f64,
+        total.first as f64 >= first * total.edges as f64,
         "{total:?}"
     );
     assert!(
-        total.three as f64 >= AMONG_THREE * total.edges as f64,
+        total.three as f64 >= three * total.edges as f64,
         "{total:?}"
     );
     let mut total = Rates::default();
@@ -258,8 +265,9 @@ fn partners_are_found_without_places_in_space() {
         total += rates(name, pattern, &unplaced(pattern, false));
     }
     println!("without places and names: {total:?}");
+    let [_, three] = floors(total.edges, [0.61, 0.93]);
     assert!(
-        total.three as f64 >= AMONG_THREE * total.edges as f64,
+        total.three as f64 >= three * total.edges as f64,
         "{total:?}"
     );
 }

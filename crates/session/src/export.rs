@@ -27,7 +27,7 @@ use crate::watcher::{ProgressShare, report_progress};
 use crate::write_pattern::{named_files, written};
 use crate::{
     Command, Event, Paper, PrintOptions, Project, Session, SessionError, SizeSelection, Watcher,
-    pictures, print_job,
+    WriteOptions, pictures, print_job,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -294,8 +294,7 @@ impl Session {
             let Some(format) = export.of_pattern() else {
                 continue;
             };
-            let has_sizes = !self.project.pattern.sizes.is_empty();
-            let sizes = (format.holds_sizes() && has_sizes).then_some(SizeSelection::All);
+            let sizes = WriteOptions::whole(format, &self.project.pattern).sizes();
             let fitting = fitting_anywhere(&self.project).map_err(cannot(export.file()))?;
             let writing = written(&self.project, format, sizes.as_ref(), &fitting)?;
             for (name, bytes) in named_files(export.file(), format, &writing) {

@@ -246,7 +246,7 @@ impl ToileApp {
         let palette = Palette::of(ui.ctx());
         for format in patterns {
             if !choice.lost.iter().any(|(known, _)| *known == format) {
-                let lost = project.lost_in(format, &WriteOptions::default());
+                let lost = project.lost_in(format, &WriteOptions::whole(format, &project.pattern));
                 let words = lost.map(|lost| lost.iter().map(ToString::to_string).collect());
                 choice.lost.push((
                     format,

@@ -27,6 +27,8 @@ pub struct ForeignFile {
     /// How it was read.
     options: OpenOptions,
     found: FoundInFile,
+    /// What the file holds and the pattern does not, in words.
+    left_out: Vec<String>,
     /// The distance to the sew line, as typed.
     inside: String,
 }
@@ -53,11 +55,15 @@ impl ToileApp {
         };
         if self.execute(command) {
             let found = self.file_read.take();
+            let unit = self.base.pattern().unit;
+            let inside = options.reading.allowance_inside;
+            let inside = inside.map(|by| number::show(by, Want::Length, unit));
             self.foreign = found.filter(is_told).map(|found| ForeignFile {
                 path: path.to_owned(),
+                left_out: found.losses.iter().map(ToString::to_string).collect(),
                 options,
                 found,
-                inside: String::new(),
+                inside: inside.unwrap_or_default(),
             });
         } else if !self.is_open() {
             self.refusal = Some(std::mem::take(&mut self.notice).text);
@@ -68,7 +74,8 @@ impl ToileApp {
     pub(super) fn read_with(&mut self, file: &Path) {
         let Some(foreign) = &self.foreign else { return };
         let mut options = foreign.options.clone();
-        options.with.push(file.to_owned());
+        // No format takes two.
+        options.with = vec![file.to_owned()];
         self.read_anew(options);
     }
 
@@ -77,7 +84,7 @@ impl ToileApp {
         let Some(foreign) = &self.foreign else { return };
         if self.is_unsaved() {
             self.notice = Notice::fault(
-                "The file would be read anew, and the changes since would be lost: undo them, or save the pattern",
+                "The file would be read anew, and the changes since would be lost: undo them first",
             );
             return;
         }
@@ -94,17 +101,16 @@ impl ToileApp {
         });
         // What cannot be read is told by opening it.
         let use_of = |path: &PathBuf| file_use(path).unwrap_or(FileUse::Other);
-        let pattern = dropped
-            .iter()
-            .position(|path| use_of(path) == FileUse::Pattern);
+        let uses: Vec<FileUse> = dropped.iter().map(use_of).collect();
+        let pattern = uses.iter().position(|of| *of == FileUse::Pattern);
         let Some(first) = pattern.or_else(|| dropped.len().checked_sub(1)) else {
             return;
         };
         let path = &dropped[first];
-        match use_of(path) {
+        match uses[first] {
             FileUse::Wearer if self.is_open() => self.take_wearer(path),
             FileUse::Fabric if self.is_open() => self.cut_from_file(path),
-            _ if self.is_unsaved() => {
+            FileUse::Pattern if self.is_unsaved() => {
                 self.notice = Notice::fault(
                     "The pattern has changes that are not saved: save it, or undo them, \
                      then drop the file again",
@@ -119,6 +125,13 @@ impl ToileApp {
                 self.open_with(path, options);
             }
         }
+    }
+
+    /// Whether the pattern is still that of the foreign file: once it is saved to a file of its own, it is not.
+    pub(super) fn is_foreign(&self) -> bool {
+        let source = self.session.project().source.as_ref();
+        let mut own = self.foreign.iter();
+        own.any(|foreign| source == Some(&foreign.path))
     }
 
     /// Shows the bar.
@@ -136,7 +149,7 @@ impl ToileApp {
                     let title = foreign.found.format.title();
                     ui.label(RichText::new(format!("Read as {title}")).strong());
                     answer = foreign.questions(ui);
-                    let left_out = foreign.left_out();
+                    let left_out = &foreign.left_out;
                     if !left_out.is_empty() {
                         ui.separator();
                         let words = format!("Left out: {}", left_out.join("; "));
@@ -151,22 +164,29 @@ impl ToileApp {
             self.foreign = None;
             return;
         }
+        let Some(answer) = answer else { return };
         let mut options = foreign.options.clone();
         match answer {
-            None => return,
-            Some(Answered::Format(format)) => options.reading.format = Some(format),
-            Some(Answered::Unit(unit)) => options.reading.unit = Some(unit),
-            Some(Answered::Inside(text)) => {
-                match number::parse(&text, Want::Length, &self.base) {
-                    Ok(Number::Value(inside)) => options.reading.allowance_inside = Some(inside),
-                    Ok(_) => self.notice = Notice::fault("type a length, as in 10mm"),
-                    Err(fault) => self.notice = Notice::fault(fault),
-                }
-                if self.notice.is_fault() {
+            Answered::Format(format) => options.reading.format = Some(format),
+            Answered::Unit(unit) => options.reading.unit = Some(unit),
+            Answered::Inside(text) if text.trim().is_empty() => {
+                options.reading.allowance_inside = None;
+            }
+            Answered::Inside(text) => {
+                let fault = match number::parse(&text, Want::Length, &self.base) {
+                    Ok(Number::Value(inside)) => {
+                        options.reading.allowance_inside = Some(inside);
+                        None
+                    }
+                    Ok(_) => Some("type a length, as in 10mm".to_owned()),
+                    Err(fault) => Some(fault),
+                };
+                if let Some(fault) = fault {
+                    self.notice = Notice::fault(fault);
                     return;
                 }
             }
-            Some(Answered::AsksFile) => {
+            Answered::AsksFile => {
                 self.dialog = Some(Dialog::With(self.file_beside(ANY)));
                 return;
             }
@@ -182,11 +202,6 @@ fn is_told(found: &FoundInFile) -> bool {
 }
 
 impl ForeignFile {
-    /// What the file holds and the pattern does not, in words.
-    fn left_out(&self) -> Vec<String> {
-        self.found.losses.iter().map(ToString::to_string).collect()
-    }
-
     /// Shows a widget for each question that the file leaves open; returns what was answered.
     fn questions(&mut self, ui: &mut Ui) -> Option<Answered> {
         let mut answer = None;
@@ -237,7 +252,7 @@ impl ForeignFile {
                     });
                     let field = field.inner.labelled_by(label);
                     let entered = ui.input(|input| input.key_pressed(egui::Key::Enter));
-                    if field.lost_focus() && entered && !self.inside.trim().is_empty() {
+                    if field.lost_focus() && entered {
                         answer = Some(Answered::Inside(self.inside.clone()));
                     }
                 }

@@ -49,7 +49,7 @@ impl ToileApp {
                 .show(ui, |ui| self.welcome(ui));
             return;
         }
-        if self.foreign.is_some() {
+        if self.is_foreign() {
             Panel::top("foreign file")
                 .frame(frame)
                 .resizable(false)

@@ -54,20 +54,23 @@ impl SaveChoice {
         let name = self.file.path.trim();
         // The longest ending of any format goes.
         let endings = Format::all().iter().map(|of| of.ending_of(name).len());
-        let stem = name.len() - endings.max().unwrap_or(0);
-        self.file.path = format!("{}{}", &name[..stem], format.ending());
+        let stem = &name[..name.len() - endings.max().unwrap_or(0)];
+        if !stem.is_empty() {
+            self.file.path = format!("{stem}{}", format.ending());
+        }
         self.format = format;
     }
 
-    /// Follows an ending that was typed. Files in the native format may end in `.json` alone.
+    /// Follows an ending that was typed; `.json` alone is that of a native file, too.
     fn follow_name(&mut self) {
         let named = Format::of_name(self.file.path.trim());
         let Some(named) = named.filter(|of| of.ending() != self.format.ending()) else {
             return;
         };
-        if named != Format::GarmentCode {
-            self.format = named;
-        }
+        self.format = match named {
+            Format::GarmentCode => Format::Native,
+            named => named,
+        };
     }
 
     /// Contents that the chosen format leaves out.

@@ -22,10 +22,9 @@ impl ToileApp {
         }
         let own = self.session.project().source.as_ref() == Some(&target.path);
         if target.foreign.is_some() && own {
-            self.notice = Notice::fault(format!(
-                "{}: the pattern was read from this file; give the new one another name",
-                target.path.display()
-            ));
+            let words = "the pattern was read from this file; give the new one another name";
+            self.notice = Notice::fault(format!("{}: {words}", target.path.display()));
+            self.ask_save();
             return;
         }
         if !own && !replaces && target.path.exists() {

@@ -288,12 +288,13 @@ impl Builder {
         let curved = self.curved(outline, fold);
         let is_sound = |size: usize| {
             let edges = edges_of(outline, (&curved.corners, &curved.curves), size);
-            let vertices = outline.in_size(size);
             let points = ring_of(&edges);
             // Straight lines cross where their vertices do.
             points.len() == edges.len()
                 || Polygon::new(points).defects().is_empty()
-                || !Polygon::new(vertices.to_vec()).defects().is_empty()
+                || !Polygon::new(outline.chords(size).points)
+                    .defects()
+                    .is_empty()
         };
         if (0..outline.by_size.len()).all(is_sound) {
             return curved;
@@ -367,14 +368,7 @@ impl Builder {
         let is_cubic = |k: usize| matches!(line.span(k % line.len()), Span::Cubic(_));
         let is_line = !(from..to).any(is_cubic)
             && (0..sizes).all(|size| {
-                let vertices = line.in_size(size);
-                let mut stretch: Vec<Vec2> = Vec::with_capacity(to - from + 1);
-                for k in from..to {
-                    let k = k % vertices.len();
-                    stretch.push(vertices[k]);
-                    stretch.extend(line.between_in(size, k));
-                }
-                stretch.push(vertices[to % vertices.len()]);
+                let (stretch, _) = line.stretch(size, (from, to));
                 is_straight(&stretch)
             });
         (!is_line).then(|| cubics(line, (from, to), sizes))
@@ -534,7 +528,7 @@ impl Builder {
         let runs_straight = |from: usize, to: usize| {
             let to = if to > from { to } else { to + count };
             let is_cubic = |k: usize| matches!(outline.span(k % count), Span::Cubic(_));
-            let stretch: Vec<Vec2> = (from..=to).map(|k| vertices[k % count]).collect();
+            let (stretch, _) = outline.stretch(self.base, (from, to));
             !(from..to).any(is_cubic) && lies_along(&stretch, ON_VERTEX)
         };
         match a != b {
@@ -546,7 +540,7 @@ impl Builder {
 }
 
 /// Leaves out the vertices from one vertex to another, in the order of the line; returns the numbers of both.
-fn without_vertices_between(line: &mut DrawnLine, [from, to]: [usize; 2]) -> [usize; 2] {
+pub(crate) fn without_vertices_between(line: &mut DrawnLine, [from, to]: [usize; 2]) -> [usize; 2] {
     let count = line.len();
     let after = |k: usize| (k + count - from) % count;
     let is_gone: Vec<bool> = (0..count)

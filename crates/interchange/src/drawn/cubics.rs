@@ -1,6 +1,7 @@
 //! The curve between two corners of a line as cubics: those that the file gives; else fitted to the points of the curve that the file has between the
 //! vertices, else a natural cubic spline through the vertices.
 
+use super::corners::lies_along;
 use super::fit::{along, chord_handles, free};
 use super::piece::{DrawnLine, Span};
 use super::spline::{handles, natural_slopes};
@@ -145,20 +146,11 @@ struct Dense {
 
 impl Dense {
     fn of(line: &DrawnLine, (from, to): (usize, usize), size: usize) -> Self {
-        let vertices = line.in_size(size);
-        let count = vertices.len();
-        let (mut points, mut indices) = (Vec::new(), Vec::new());
-        for k in from..=to {
-            indices.push(points.len());
-            points.push(vertices[k % count]);
-            if k < to {
-                points.extend(line.between_in(size, k % count));
-            }
-        }
+        let (points, vertices) = line.stretch(size, (from, to));
         Self {
             slopes: natural_slopes(&points),
             points,
-            vertices: indices,
+            vertices,
         }
     }
 
@@ -230,9 +222,11 @@ impl Cubics {
             .into_iter()
             .zip(dense.iter().zip(ranges).zip(&mut self.by_size))
         {
-            if off > MAX_LEFT {
+            // A chord takes the place of a curve that it is nearer to the points than.
+            let points = &dense.points[*from..=*to];
+            if off > MAX_LEFT && lies_along(points, off) {
                 self.has_chords = true;
-                cubic.handles = chord_handles(&dense.points[*from..=*to]);
+                cubic.handles = chord_handles(points);
             }
             own.push(cubic);
         }

@@ -4,7 +4,7 @@ use super::allowance::{Width, distance, width};
 use super::cubics::Cubics;
 use super::piece::DrawnLine;
 use toile_cut::{Corner as CutCorner, MITRE_LIMIT, SeamEdge, SeamLine, cut_line};
-use toile_geometry::{Curve, Vec2};
+use toile_geometry::{Curve, Polygon, Vec2};
 use toile_pattern::{Corner, EdgeCorner, MitreLimit};
 
 /// Chords of a curve whose distance to the cut line is taken.
@@ -113,6 +113,10 @@ pub(crate) fn cut_fit(edges: &[Vec<Curve>], (vertices, dense): (&[Vec2], &[Vec2]
                 }
             }
         });
+    }
+    // No allowance gives the cut line of a sew line that crosses itself.
+    if !Polygon::new(ring_of(edges)).is_simple() {
+        return fit;
     }
     let Some(mut made) = fit.made(edges) else {
         return fit;

@@ -7,7 +7,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use toile_geometry::Vec2;
-use toile_pattern::{GradeRule, Number, PanelBuilder, PointId, PointRule, SizeId, Variable};
+use toile_pattern::{
+    GradeRule, MAX_GRADE_RULE, Number, PanelBuilder, PointId, PointRule, SizeId, Variable,
+};
 
 /// Places of one point in two sizes that differ by less are one (m): as coarse as files round.
 const SAME_PLACE: f64 = 1e-6;
@@ -54,6 +56,8 @@ pub(super) struct Rules {
     numbers: BTreeMap<Vec<[i64; 2]>, u32>,
     /// Numbers that are taken.
     taken: BTreeSet<u32>,
+    /// The smallest number that may be free.
+    next: u32,
 }
 
 fn key(shifts: &[Vec2]) -> Vec<[i64; 2]> {
@@ -65,7 +69,9 @@ impl Rules {
     /// No rules yet; `numbered` are the rules that the file numbers.
     pub fn new(sizes: &[SizeId], base: usize, numbered: &[(u32, Vec<Vec2>)]) -> Self {
         let mut numbers = BTreeMap::new();
-        for (number, shifts) in numbered {
+        let is_number = |number: &u32| (1..=MAX_GRADE_RULE).contains(number);
+        let numbered = numbered.iter().filter(|(number, _)| is_number(number));
+        for (number, shifts) in numbered.clone() {
             numbers.entry(key(shifts)).or_insert(*number);
         }
         Self {
@@ -73,14 +79,15 @@ impl Rules {
             sizes: sizes.to_vec(),
             base,
             known: BTreeMap::new(),
-            taken: numbered.iter().map(|(number, _)| *number).collect(),
+            taken: numbered.map(|(number, _)| *number).collect(),
+            next: 1,
             numbers,
         }
     }
 
     /// The rule of a corner at places in all sizes.
     pub fn corner(&mut self, drawing: &mut PanelBuilder<'_>, places: &SizedPlaces) -> PointRule {
-        let usual = places.0[self.base.min(places.0.len() - 1)];
+        let usual = places.0[self.base];
         if self.sizes.len() < 2 || !places.moves(self.base) {
             return PointRule::at(usual.x, usual.y);
         }
@@ -91,9 +98,12 @@ impl Rules {
         }
         let number = match self.numbers.get(&key) {
             Some(&number) => number,
-            None => (1..)
-                .find(|number| !self.taken.contains(number))
-                .unwrap_or_default(),
+            None => {
+                while self.taken.contains(&self.next) {
+                    self.next += 1;
+                }
+                self.next
+            }
         };
         self.taken.insert(number);
         let by_size: Vec<(SizeId, Vec2)> = self.sizes.iter().copied().zip(shifts).collect();

@@ -93,9 +93,15 @@ pub(crate) struct Chords {
 }
 
 impl Chords {
+    /// The vertex before a chord, whose number may run beyond the last.
+    pub fn vertex(&self, chord: usize) -> usize {
+        let chord = chord % self.points.len();
+        self.starts.partition_point(|&start| start <= chord) - 1
+    }
+
     /// The place on a chord as the vertex before it, and the share of the length of the span after that.
     pub fn place(&self, chord: usize, share: f64) -> (usize, f64) {
-        let vertex = self.starts.partition_point(|&start| start <= chord) - 1;
+        let vertex = self.vertex(chord);
         let start = self.starts[vertex];
         let end = self.starts.get(vertex + 1).copied();
         let end = end.unwrap_or(self.points.len());
@@ -204,6 +210,21 @@ impl DrawnLine {
     pub fn in_size(&self, size: usize) -> &[Vec2] {
         let own = self.by_size.get(size).or(self.by_size.first());
         own.map_or(&[], Vec::as_slice)
+    }
+
+    /// The vertices from one to another in a size, with the points between them; `to` may lie beyond the last vertex of
+    /// a closed line. Also the index of each vertex among them.
+    pub fn stretch(&self, size: usize, (from, to): (usize, usize)) -> (Vec<Vec2>, Vec<usize>) {
+        let vertices = self.in_size(size);
+        let (mut points, mut indices) = (Vec::new(), Vec::new());
+        for k in from..=to {
+            indices.push(points.len());
+            points.push(vertices[k % vertices.len()]);
+            if k < to {
+                points.extend(self.between_in(size, k % vertices.len()));
+            }
+        }
+        (points, indices)
     }
 
     /// Number of its vertices.

@@ -104,14 +104,24 @@ impl BlockLine {
         line
     }
 
-    /// Area that the vertices enclose (square units of the file).
+    /// Vertices with the points of curves between them.
+    pub fn shape(&self) -> Vec<Vec2> {
+        let mut shape = Vec::with_capacity(self.points.len());
+        for (k, &p) in self.points.iter().enumerate() {
+            shape.push(p);
+            shape.extend(self.between.get(k).into_iter().flatten());
+        }
+        shape
+    }
+
+    /// Area that the line encloses (square units of the file).
     pub fn area(&self) -> f64 {
-        ring_area(&self.points).abs()
+        ring_area(&self.shape()).abs()
     }
 
     /// Length of the line, without the way back to its start.
     pub fn length(&self) -> f64 {
-        self.points
+        self.shape()
             .windows(2)
             .map(|pair| (pair[1] - pair[0]).norm())
             .sum()
@@ -232,7 +242,7 @@ impl BlockPiece {
         let drawn = piece.cut.len();
         piece
             .cut
-            .retain(|line| line.is_closed && line.points.len() > 2);
+            .retain(|line| line.is_closed && line.shape().len() > 2);
         piece.open_cuts = drawn - piece.cut.len();
         let closed = piece.cut.len();
         piece

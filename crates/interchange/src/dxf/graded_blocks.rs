@@ -184,6 +184,14 @@ impl Grader<'_> {
                 if let Some(line) = lines(own).get_mut(number) {
                     let moved = line.points.iter_mut().zip(shifts);
                     moved.for_each(|(p, by)| *p += by[size]);
+                    // Points of a curve between two vertices follow both.
+                    for (k, points) in line.between.iter_mut().enumerate() {
+                        let [a, b] = [k, k + 1].map(|k| shifts[k % shifts.len()][size]);
+                        let parts = (points.len() + 1) as f64;
+                        for (j, p) in points.iter_mut().enumerate() {
+                            *p += a + (b - a) * ((j + 1) as f64 / parts);
+                        }
+                    }
                 }
             }
         };
@@ -219,6 +227,15 @@ impl Grader<'_> {
                 for (size, own) in all.iter_mut().enumerate() {
                     own.notches[number].0 += shifts[size];
                 }
+            }
+        }
+        for (number, (line, _)) in piece.notch_lines.iter().enumerate() {
+            let first = line.points.first();
+            let shifts = first.and_then(|&at| ruled(at).or_else(|| near(at)));
+            let Some(shifts) = shifts else { continue };
+            for (size, own) in all.iter_mut().enumerate() {
+                let points = own.notch_lines[number].0.points.iter_mut();
+                points.for_each(|p| *p += shifts[size]);
             }
         }
         for (number, &at) in piece.drills.iter().enumerate() {
@@ -296,8 +313,9 @@ impl Grader<'_> {
             if let Some(shifts) = ruled[k] {
                 return shifts.clone();
             }
-            let before = known.iter().rev().find(|&&known| known < k);
-            let after = known.iter().find(|&&known| known > k);
+            let next = known.partition_point(|&known| known < k);
+            let before = next.checked_sub(1).map(|before| &known[before]);
+            let after = known.get(next);
             let (from, to) = match (before, after, line.is_closed) {
                 (Some(&from), Some(&to), _) => (from, to),
                 (_, _, true) => (last, first),

@@ -24,6 +24,7 @@ mod entities;
 mod graded_blocks;
 mod groups;
 mod labels;
+mod limits;
 mod nest;
 mod nest_piece;
 mod outlines;

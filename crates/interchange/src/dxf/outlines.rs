@@ -14,7 +14,8 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
     let mut outer: Vec<BlockLine> = Vec::new();
     let mut shapes: Vec<(Bounds2, Polygon)> = Vec::new();
     for line in cut {
-        let bounds = Bounds2::of(line.points.iter().copied());
+        let shape = line.shape();
+        let bounds = Bounds2::of(shape.iter().copied());
         let first = line.points[0];
         let holds = |(around, shape): &(Bounds2, Polygon)| {
             around.contains(first) && around.meets(&bounds) && shape.contains(first)
@@ -22,7 +23,7 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
         if shapes.iter().any(holds) {
             piece.cutouts.push(line);
         } else {
-            shapes.push((bounds, Polygon::new(line.points.clone())));
+            shapes.push((bounds, Polygon::new(shape)));
             outer.push(line);
         }
     }
@@ -37,7 +38,7 @@ pub(super) fn split(mut piece: BlockPiece) -> Vec<BlockPiece> {
         let gap = ON_OUTLINE * line.length();
         let near = bounds.grown(gap);
         let on = |p: &Vec2| {
-            near.contains(*p) && (around.contains(*p) || distance(*p, &line.points) <= gap)
+            near.contains(*p) && (around.contains(*p) || distance(*p, &around.outer) <= gap)
         };
         let lines = |all: &[BlockLine]| -> Vec<BlockLine> {
             all.iter()

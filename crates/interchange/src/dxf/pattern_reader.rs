@@ -4,6 +4,7 @@ use super::block_piece::BlockPiece;
 use super::blocks::Pieces;
 use super::drawing_reader::read_drawing;
 use super::labels::Labels;
+use super::limits::check_points;
 use super::piece_maker::PieceMaker;
 use super::sized_pieces::Nest;
 use super::with_table::{Units, with_table};
@@ -13,11 +14,6 @@ use crate::drawn::unit::unit;
 use crate::{Companion, Format, FormatError, Guess, Loss, ReadOption, ReadOptions};
 use toile_geometry::Bounds2;
 use toile_pattern::{DisplayUnit, Pattern};
-
-/// Most vertices of the outlines and lines of a pattern in its base size.
-const MAX_POINTS: usize = 200_000;
-/// Most vertices of the outlines and lines of a pattern in all sizes.
-const MAX_SIZED_POINTS: usize = 1_000_000;
 
 /// A pattern that was read.
 pub(crate) struct DxfReading {
@@ -62,7 +58,9 @@ pub(crate) fn read_dxf(
     guesses.extend(sized.guesses);
     losses.extend(sized.losses);
     let nest = Nest::of(sized.pieces, &style);
-    check_points(&nest)?;
+    let base = nest.pieces.iter();
+    let base = base.filter_map(|piece| piece.sized.get(&nest.base));
+    check_points(base, nest.sizes.len().max(1))?;
     let mut maker = PieceMaker {
         base: nest.base,
         count: nest.sizes.len().max(1),
@@ -134,33 +132,8 @@ fn stated_unit(style: &Labels, header_unit: i64) -> Option<DisplayUnit> {
 fn largest(pieces: &[BlockPiece]) -> f64 {
     let sides = pieces.iter().filter_map(|piece| {
         let outline = piece.cut.first()?;
-        let size = Bounds2::of(outline.points.iter().copied()).size();
+        let size = Bounds2::of(outline.shape()).size();
         Some(size.x.max(size.y))
     });
     sides.fold(0.0, f64::max)
-}
-
-/// Refuses a pattern of more points than a document can hold.
-fn check_points(nest: &Nest) -> Result<(), FormatError> {
-    let points = |piece: &BlockPiece| -> usize {
-        let lines = [&piece.cut, &piece.sew, &piece.internal, &piece.cutouts];
-        let lines = lines.into_iter().flatten();
-        lines.map(|line| line.points.len()).sum()
-    };
-    let base = nest
-        .pieces
-        .iter()
-        .filter_map(|piece| piece.sized.get(&nest.base));
-    let base: usize = base.map(points).sum();
-    let sizes = nest.sizes.len().max(1);
-    match base > MAX_POINTS || base * sizes > MAX_SIZED_POINTS {
-        false => Ok(()),
-        true => Err(FormatError::new(
-            "the whole file",
-            format!("its lines have {base} vertices in {sizes} sizes"),
-            format!(
-                "at most {MAX_POINTS} are read, in all sizes {MAX_SIZED_POINTS}: save fewer pieces or sizes in one file"
-            ),
-        )),
-    }
 }

@@ -159,7 +159,9 @@ impl PieceMaker {
             line.drop_repeats(REPEAT);
         }
         drawn.inside.retain(|line| line.len() > 1);
-        drawn.holes.retain(|line| line.len() > 2);
+        drawn
+            .holes
+            .retain(|line| line.chords(self.base).points.len() > 2);
     }
 
     /// Place of the sew line: on its layer, else evenly inside the cut line among internal lines, as Valentina
@@ -198,10 +200,7 @@ impl PieceMaker {
         cut: &DrawnLine,
         (fold, by): (Option<[Vec2; 2]>, f64),
     ) -> Option<DrawnLine> {
-        let mut line = DrawnLine {
-            between: Vec::new(),
-            ..cut.clone()
-        };
+        let mut line = cut.clone();
         let is_clockwise = ring_area(line.in_size(self.base)) < 0.0;
         if is_clockwise {
             line.reverse();
@@ -213,13 +212,22 @@ impl PieceMaker {
             on(ring[k]) && on(ring[(k + 1) % ring.len()])
         };
         let by = |k: usize| if on_fold(k) { 0.0 } else { by };
-        let moved = line.by_size.iter().map(|points| inset(points, by));
-        let Some(by_size) = moved.collect::<Option<Vec<Vec<Vec2>>>>() else {
-            let why = "the piece is too narrow for it";
-            self.lost(name, (1, "the allowance that was asked for", why));
-            return None;
-        };
-        line.by_size = by_size;
+        for size in 0..line.by_size.len() {
+            // Points of curves between the vertices move as these do.
+            let chords = line.chords(size);
+            let Some(moved) = inset(&chords.points, |chord| by(chords.vertex(chord))) else {
+                let why = "the piece is too narrow for it";
+                self.lost(name, (1, "the allowance that was asked for", why));
+                return None;
+            };
+            let ends = chords.starts.iter().copied().skip(1).chain([moved.len()]);
+            let spans: Vec<(usize, usize)> = chords.starts.iter().copied().zip(ends).collect();
+            line.by_size[size] = spans.iter().map(|&(start, _)| moved[start]).collect();
+            if let Some(between) = line.between.get_mut(size) {
+                let of = |&(start, end): &(usize, usize)| moved[start + 1..end].to_vec();
+                *between = spans.iter().map(of).collect();
+            }
+        }
         if is_clockwise {
             line.reverse();
         }

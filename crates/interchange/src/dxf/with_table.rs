@@ -3,6 +3,7 @@
 use super::block_piece::BlockPiece;
 use super::graded_blocks::{Grading, graded};
 use super::labels::Labels;
+use super::limits::check_points;
 use super::rule_table::RuleTable;
 use crate::{Companion, FormatError, Guess, Loss, ReadOption};
 use toile_geometry::Vec2;
@@ -76,6 +77,7 @@ pub(super) fn with_table(
             ..SizedPieces::default()
         });
     }
+    check_points(pieces.iter(), table.sizes.len())?;
     let metres = units.unit.metres();
     // A file that is wrong about its unit comes with a table that is as wrong.
     let own = table.unit.filter(|_| table.unit != units.stated);

@@ -155,15 +155,20 @@ pub(super) fn read(
     let mut pieces = Vec::new();
     let mut replaced = Vec::new();
     for (id, group) in edited {
-        let piece = layers::piece(drawing, group, &mut losses);
-        if let Some(piece) = piece {
-            replaced.push(Some(id));
-            pieces.push(piece);
+        match layers::piece(drawing, group, &mut losses) {
+            Some(piece) => {
+                replaced.push(Some(id));
+                pieces.push(piece);
+            }
+            None => notes.push(format!(
+                "{}: it has no closed outline in the drawing; the panel stays as it was",
+                pattern.panel(id).map_or("a panel", |panel| &panel.name)
+            )),
         }
     }
     // Copies of layers, and what was drawn beside the panels.
     for &group in groups.iter().filter(|group| !taken.contains(group)) {
-        if let Some(piece) = layers::piece(drawing, group, &mut losses) {
+        if let Some(piece) = layers::new_piece(drawing, group, &mut losses) {
             replaced.push(None);
             pieces.push(piece);
         }

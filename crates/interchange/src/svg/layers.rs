@@ -18,11 +18,30 @@ pub(super) fn groups(drawing: &Drawing) -> Vec<usize> {
         .collect()
 }
 
+/// The piece in a group that is no panel yet, and what was left out; `None`, with a loss, without a closed line.
+pub(super) fn new_piece(
+    drawing: &Drawing,
+    group: usize,
+    losses: &mut Vec<Loss>,
+) -> Option<SvgPiece> {
+    let found = piece(drawing, group, losses);
+    if found.is_none() {
+        let why = "none of its lines is a closed outline";
+        losses.push(Loss::at(name(drawing, group), "a panel", why));
+    }
+    found
+}
+
+/// The name of a group.
+fn name(drawing: &Drawing, group: usize) -> String {
+    let own = &drawing.groups[group];
+    own.label.clone().unwrap_or_else(|| own.id.clone())
+}
+
 /// The piece in a group, and what was left out; `None` without a closed line.
 pub(super) fn piece(drawing: &Drawing, group: usize, losses: &mut Vec<Loss>) -> Option<SvgPiece> {
-    let own = &drawing.groups[group];
     let mut piece = SvgPiece {
-        name: own.label.clone().unwrap_or_else(|| own.id.clone()),
+        name: name(drawing, group),
         ..SvgPiece::default()
     };
     let mut told = None;
@@ -67,14 +86,7 @@ pub(super) fn piece(drawing: &Drawing, group: usize, losses: &mut Vec<Loss>) -> 
             )
         });
     }
-    let Some(outline) = piece.outline() else {
-        losses.push(Loss::at(
-            &piece.name,
-            "a panel",
-            "none of its lines is a closed outline",
-        ));
-        return None;
-    };
+    let outline = piece.outline()?;
     let region = Region::of(outline);
     let all = piece.inside.len();
     let gap = 0.01;

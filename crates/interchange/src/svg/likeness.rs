@@ -67,7 +67,7 @@ impl Outlines {
     }
 }
 
-/// The segment that lines were moved from where they were written (mm), if they are alike but for it.
+/// By how much lines were moved from where they were written (mm), if they are alike but for that.
 pub(super) fn are_alike(written: &Outlines, found: &Outlines) -> Option<Vec2> {
     let (before, after) = (written.bounds?, found.bounds?);
     let by = after.centre() - before.centre();
@@ -86,7 +86,7 @@ pub(super) fn are_alike(written: &Outlines, found: &Outlines) -> Option<Vec2> {
     is_alike.then_some(by)
 }
 
-/// Whether lines moved by a segment lie on others.
+/// Whether lines that are moved by an offset lie on others.
 fn lie_on(lines: &Kind, others: &Kind, by: Vec2) -> bool {
     use kurbo::ParamCurve;
     let by = kurbo::Vec2::new(by.x, by.y);

@@ -52,7 +52,7 @@ pub(crate) fn read_svg(text: &str, options: &ReadOptions) -> Result<SvgReading, 
         false => {
             let groups = layers::groups(&drawing);
             let own = groups.into_iter();
-            own.filter_map(|group| layers::piece(&drawing, group, &mut losses))
+            own.filter_map(|group| layers::new_piece(&drawing, group, &mut losses))
                 .collect()
         }
     };

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use toile_cut::{CutOptions, CutPiece, TextKind, Words};
 use toile_geometry::{Bounds2, Vec2};
 use toile_pattern::fields::Choice;
-use toile_pattern::{Draft, Panel, Pattern, Source};
+use toile_pattern::{Draft, Panel, Pattern};
 
 /// Name of a sublayer, and whether lines of a kind are in it.
 type Sublayer = (&'static str, fn(LineKind) -> bool);
@@ -139,21 +139,8 @@ fn drawn(pattern: &Pattern, draft: &Draft, size: Option<&str>) -> Result<Vec<Dra
 /// The way from a panel's place on its sheet to its place on the table (m).
 fn on_table(pattern: &Pattern, panel: &Panel) -> Vec2 {
     let own = panel.on_table.map_or(Vec2::zeros(), Vec2::from);
-    let mut source = panel.source;
-    // The sides of split panels lie where the whole panel does; the steps are counted against circles.
-    for _ in 0..=pattern.panels.len() {
-        match source {
-            Source::Traced(sheet) => {
-                let sheet = pattern.sheet(sheet);
-                return own + sheet.map_or(Vec2::zeros(), |sheet| sheet.on_table.into());
-            }
-            Source::Side { of, .. } => match pattern.panel(of) {
-                Some(panel) => source = panel.source,
-                None => return own,
-            },
-        }
-    }
-    own
+    let sheet = pattern.sheet_of(panel).and_then(|id| pattern.sheet(id));
+    own + sheet.map_or(Vec2::zeros(), |sheet| sheet.on_table.into())
 }
 
 /// The beginning of a file: the size of its page.

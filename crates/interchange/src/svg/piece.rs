@@ -1,10 +1,10 @@
 //! A piece as an SVG file draws it, and the drawn piece that it becomes.
 
 use crate::Loss;
-use crate::drawn::builder::ON_VERTEX;
+use crate::drawn::builder::{ON_VERTEX, without_vertices_between};
 use crate::drawn::inset::inset;
 use crate::drawn::piece::{DrawnLine, DrawnNotch, DrawnPiece, Span};
-use toile_geometry::{Vec2, closest_on_segment, ring_area};
+use toile_geometry::{Curve, Vec2, closest_on_segment, ring_area};
 use toile_pattern::{Cut, NotchKind};
 
 /// Vertices that lie nearer to the one before are repeats (m).
@@ -167,13 +167,18 @@ fn free_handles(line: &mut DrawnLine) {
 fn whole(mut line: DrawnLine) -> DrawnLine {
     if let (true, 1, Span::Cubic([a, b])) = (line.is_closed, line.len(), line.span(0)) {
         let p = line.in_size(0)[0];
-        // De Casteljau's division at the middle.
-        let half = |a: Vec2, b: Vec2| (a + b) * 0.5;
-        let [pa, ab, bp] = [half(p, a), half(a, b), half(b, p)];
-        let [left, right] = [half(pa, ab), half(ab, bp)];
-        let middle = half(left, right);
-        line.by_size[0].push(middle);
-        line.spans = vec![Span::Cubic([pa, left]), Span::Cubic([right, bp])];
+        let curve = Curve::Cubic {
+            start: p,
+            controls: [a, b],
+            end: p,
+        };
+        let halves = [curve.between(0.0, 0.5), curve.between(0.5, 1.0)];
+        line.by_size[0].push(halves[0].end());
+        let span = |half: &Curve| match half {
+            Curve::Cubic { controls, .. } => Span::Cubic(*controls),
+            Curve::Line { .. } | Curve::Arc { .. } | Curve::Quadratic { .. } => Span::Straight,
+        };
+        line.spans = halves.iter().map(span).collect();
     }
     line
 }
@@ -252,25 +257,8 @@ fn folded(outline: &mut DrawnLine, ends: [Vec2; 2]) -> Option<[Vec2; 2]> {
     let [from, to] = stretch(outline, ends)?;
     let count = outline.len();
     let found = [from, to].map(|k| outline.in_size(0)[k % count]);
-    let inner: Vec<usize> = (from + 1..to).map(|k| k % count).collect();
-    let mut k = 0;
     outline.spans.resize(count, Span::Straight);
-    outline.spans.retain(|_| {
-        k += 1;
-        !inner.contains(&(k - 1))
-    });
-    let mut k = 0;
-    outline.by_size[0].retain(|_| {
-        k += 1;
-        !inner.contains(&(k - 1))
-    });
-    if !outline.is_corner.is_empty() {
-        let mut k = 0;
-        outline.is_corner.retain(|_| {
-            k += 1;
-            !inner.contains(&(k - 1))
-        });
-    }
+    without_vertices_between(outline, [from, to % count]);
     Some(found)
 }
 

@@ -1,5 +1,6 @@
 //! Patterns written as SVG and read again: the same document, and panels that were edited as drawn.
 
+use crate::patterns::star_pattern;
 use crate::random_pattern::{Dice, random_pattern};
 use crate::{drafted, read, read_with};
 use std::path::{Path, PathBuf};
@@ -213,37 +214,47 @@ fn one_node_moved_makes_that_panel_drawn_and_leaves_all_others() {
 #[test]
 fn random_patterns_come_back_whole_and_one_panel_edited() {
     let (mut written, mut edited) = (0, 0);
-    let mut seed = 0;
-    while written < 100 && seed < 1_500 {
-        seed += 1;
+    for seed in 0..150 {
+        let mut pattern = star_pattern(seed);
+        // Its notches have ids of their own.
+        pattern.ids.next = 1_000_000;
+        let Some(text) = svg_of(&pattern, None) else {
+            continue;
+        };
+        written += 1;
+        let reading = read(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        assert_same(&reading.pattern, &pattern, &format!("seed {seed}"));
+        let sewn = paths(&text, "sew");
+        let (line, panel) = &sewn[Dice::new(seed).below(sewn.len())];
+        if let Some(moved) = with_moved_node(&text, *line) {
+            let reading = read(&moved).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+            let lines = |pattern: &Pattern| pattern.panel_named(panel).unwrap().lines.clone();
+            assert_ne!(lines(&reading.pattern), lines(&pattern), "seed {seed}");
+            edited += 1;
+        }
+    }
+    println!("{written} written, {edited} edited");
+    assert!(written >= 100 && edited >= 80, "{written} {edited}");
+}
+
+/// Patterns at random whose panels may not be drawn at all: those that are come back.
+#[test]
+fn nonsense_comes_back_where_it_can_be_written() {
+    let mut written = 0;
+    for seed in 0..400 {
         let pattern = random_pattern(&mut Dice::new(seed));
         let size = pattern.sizes.first().map(|size| size.name.clone());
         let Some(text) = svg_of(&pattern, size.as_deref()) else {
             continue;
         };
-        if !text.contains("data-toile-panel") {
-            continue;
-        }
-        written += 1;
+        written += usize::from(text.contains("data-toile-panel"));
         // The native format itself makes the same of it.
         let native = toile_interchange::write_pattern(&pattern).unwrap();
         let expected = read_pattern(&native).unwrap().0;
         let reading = read(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         assert_same(&reading.pattern, &expected, &format!("seed {seed}"));
-        let sewn = paths(&text, "sew");
-        let (line, panel) = &sewn[Dice::new(seed).below(sewn.len())];
-        if let Some(moved) = with_moved_node(&text, *line) {
-            let reading = read(&moved).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
-            let others = |pattern: &Pattern| -> Vec<Panel> {
-                let others = pattern.panels.iter().filter(|other| other.name != *panel);
-                others.map(|panel| without_place(panel)).collect()
-            };
-            assert_eq!(others(&reading.pattern), others(&expected), "seed {seed}");
-            edited += 1;
-        }
     }
-    println!("{written} written, {edited} edited, of {seed}");
-    assert!(written >= 15 && edited >= 10, "{written} {edited}");
+    assert!(written > 0);
 }
 
 #[test]

@@ -5,6 +5,9 @@ mod back;
 mod damaged;
 mod drawings;
 mod freesewing;
+#[allow(dead_code)] // Other tests use more of it.
+#[path = "../knife/patterns.rs"]
+mod patterns;
 #[path = "../random_pattern/mod.rs"]
 mod random_pattern;
 

@@ -122,13 +122,8 @@ pub fn give_rule(
     if points.is_empty() {
         return Err(no_points());
     }
-    let number = GradeRule::free_number(pattern);
-    if number > MAX_GRADE_RULE {
-        return Err(impossible(
-            format!("rules are numbered to {MAX_GRADE_RULE}"),
-            "take rules away that no point has",
-        ));
-    }
+    let number = GradeRule::free_numbers(pattern).next();
+    let number = number.ok_or_else(no_number)?;
     let mut ids = pattern.ids;
     let (rule, variables) = GradeRule::made([ids.take(), ids.take()], number, shifts);
     let at_base = in_size(evaluation, base);
@@ -269,7 +264,7 @@ pub fn rules_of_sizes(
             known.entry(own).or_insert(rule);
         }
     }
-    let mut number = GradeRule::free_number(pattern);
+    let mut numbers = GradeRule::free_numbers(pattern);
     let (mut variables, mut put) = (Vec::new(), Vec::new());
     for &id in points {
         let (sheet, found) = point(pattern, id)?;
@@ -294,12 +289,16 @@ pub fn rules_of_sizes(
             continue;
         }
         let key: Vec<[i64; 2]> = shifts.iter().map(|(_, shift)| rounded(*shift)).collect();
-        let rule = *known.entry(key).or_insert_with(|| {
-            let (rule, both) = GradeRule::made([ids.take(), ids.take()], number, &shifts);
-            number = number.saturating_add(1);
-            variables.extend(both.map(put_variable));
-            rule
-        });
+        let rule = match known.get(&key) {
+            Some(rule) => *rule,
+            None => {
+                let number = numbers.next().ok_or_else(no_number)?;
+                let (rule, both) = GradeRule::made([ids.take(), ids.take()], number, &shifts);
+                variables.extend(both.map(put_variable));
+                known.insert(key, rule);
+                rule
+            }
+        };
         put.push(Edit::Put(Entity::Point(
             sheet.id,
             Arc::new(Point {
@@ -382,6 +381,13 @@ fn refuse_shift(by: Vec2) -> Result<(), EditError> {
             "give the shift from the base size to the size, not the place",
         )),
     }
+}
+
+fn no_number() -> EditError {
+    impossible(
+        format!("rules are numbered to {MAX_GRADE_RULE}"),
+        "take rules away that no point has",
+    )
 }
 
 fn no_points() -> EditError {

@@ -47,6 +47,7 @@ impl FlatSurface {
             positions: vertices.iter().map(|&place| Vec3::from(place)).collect(),
             triangles,
         };
+        check_ease(options.ease)?;
         let path = Path::new("the mesh");
         mesh.check().map_err(|defect| SessionError::Format {
             path: path.to_owned(),
@@ -55,7 +56,7 @@ impl FlatSurface {
         mesh.orient();
         let mut notes = Vec::new();
         let target = match places {
-            None => Target::whole(&mesh, options.ease)?,
+            None => Target::whole(&mesh, options.ease),
             Some(places) => {
                 let asked = SurfaceLoop {
                     places: places.iter().map(|&place| place.into()).collect(),
@@ -134,13 +135,9 @@ pub(super) enum Target {
 }
 
 impl Target {
-    /// A whole mesh, moved out by the ease (m).
-    ///
-    /// # Errors
-    /// An ease that is too large, or no number.
-    pub fn whole(mesh: &TriangleMesh, ease: f64) -> Result<Self, SessionError> {
-        check_ease(ease)?;
-        Ok(Self::Whole(moved_out(mesh, ease)))
+    /// A whole mesh, moved out by an ease that was checked (m).
+    pub fn whole(mesh: &TriangleMesh, ease: f64) -> Self {
+        Self::Whole(moved_out(mesh, ease))
     }
 
     /// The region inside a loop, moved out by the ease.

@@ -50,7 +50,7 @@ pub fn flatten_to_panel(
     let name = to.file_name().unwrap_or_default().to_string_lossy();
     let stem = name[..name.len() - ".toile.json".len()].to_owned();
     let (target, place) = match &options.loop_file {
-        None => (Target::whole(&opened.mesh, options.ease)?, source.place()),
+        None => (Target::whole(&opened.mesh, options.ease), source.place()),
         Some(path) => {
             let (asked, found) = open_loop(path, opened.mannequin.as_ref())?;
             notes.extend(found);

@@ -11,7 +11,7 @@ pub(super) const CHORDS: usize = 32;
 const FLAT: f64 = 1e-4;
 /// Edges shorter than this are not sewn (m).
 const MIN_LENGTH: f64 = 5e-4;
-/// Part of a piece's height at its bottom within which an edge counts as the bottom edge (1).
+/// SeenCurve of a piece's height at its bottom within which an edge counts as the bottom edge (1).
 const BOTTOM: f64 = 0.1;
 /// Least cosine of the angle between a bottom edge and the direction across the grain (1).
 const LEVEL: f64 = 0.8;
@@ -69,13 +69,19 @@ impl SeamEdges {
         for (index, piece) in draft.pieces.iter().enumerate() {
             let frame = Frame::new(piece);
             edges.places.push(Vec::new());
-            let holes = piece.holes.iter().map(Vec::as_slice);
-            for ring in std::iter::once(piece.outline.as_slice()).chain(holes) {
+            let first = edges.all.len();
+            for ring in rings(piece) {
                 edges.add_ring(evaluation, (index, piece), &frame, ring);
             }
-            frame.find_bottom(&mut edges.all, index);
+            frame.find_bottom(&mut edges.all[first..]);
         }
         edges
+    }
+
+    /// Number of edges that a draft has.
+    pub fn count(draft: &Draft) -> usize {
+        let rings = draft.pieces.iter().flat_map(rings);
+        rings.map(|ring| groups(ring).len()).sum()
     }
 
     /// Index of the edge that an edge of a piece belongs to.
@@ -91,7 +97,7 @@ impl SeamEdges {
         ring: &[PieceEdge],
     ) {
         let first = self.all.len();
-        let parts: Vec<Part> = ring.iter().map(|edge| frame.part(edge)).collect();
+        let parts: Vec<SeenCurve> = ring.iter().map(|edge| frame.part(edge)).collect();
         let groups = groups(ring);
         let mut places = vec![None; ring.len()];
         for (k, group) in groups.iter().enumerate() {
@@ -205,7 +211,7 @@ impl Frame {
         (self.turned(point).x - 0.5 * (low + high)) / half
     }
 
-    fn part(&self, edge: &PieceEdge) -> Part {
+    fn part(&self, edge: &PieceEdge) -> SeenCurve {
         let points = edge.curve.flatten(FLAT).into_iter();
         let line: Vec<Vec2> = points.map(|point| self.seen(point)).collect();
         let count = line.len();
@@ -217,17 +223,17 @@ impl Frame {
             line[1.min(count - 1)] - line[0],
             line[count - 1] - line[count.saturating_sub(2)],
         ];
-        Part {
+        SeenCurve {
             directions: [at(0.0, ends[0]), at(1.0, ends[1])],
             length: edge.curve.length(),
             line,
         }
     }
 
-    /// Marks the edges of a piece that are its lower border.
-    fn find_bottom(&self, edges: &mut [SeamEdge], piece: usize) {
+    /// Marks those of the edges of a piece that are its lower border.
+    fn find_bottom(&self, edges: &mut [SeamEdge]) {
         let [low, high] = self.bounds[1];
-        for edge in edges.iter_mut().filter(|edge| edge.piece == piece) {
+        for edge in edges {
             let heights = edge.laid.map(|point| self.turned(self.seen(point)).y);
             let height = heights.iter().sum::<f64>() / 3.0;
             edge.is_bottom = height - low < BOTTOM * (high - low) && edge.direction.cos() > LEVEL;
@@ -236,14 +242,14 @@ impl Frame {
 }
 
 /// One curve of a ring, as seen from the right side.
-struct Part {
+struct SeenCurve {
     line: Vec<Vec2>,
     length: f64,
     /// Directions at the start and the end (rad).
     directions: [f64; 2],
 }
 
-impl Part {
+impl SeenCurve {
     fn last(&self) -> Vec2 {
         self.line[self.line.len() - 1]
     }
@@ -251,6 +257,12 @@ impl Part {
     fn chord(&self) -> Vec2 {
         self.last() - self.line[0]
     }
+}
+
+/// The outline and the holes of a piece.
+fn rings(piece: &Piece) -> impl Iterator<Item = &[PieceEdge]> {
+    let holes = piece.holes.iter().map(Vec::as_slice);
+    std::iter::once(piece.outline.as_slice()).chain(holes)
 }
 
 /// Curves of a ring grouped by the named edge that they belong to, in order; legs of darts are left out.
@@ -276,7 +288,7 @@ fn groups(ring: &[PieceEdge]) -> Vec<Vec<usize>> {
 
 /// Angle by which the cloth after the curve `to` turns when the darts between the curves `from` and `to` are
 /// closed (rad).
-fn closing(parts: &[Part], ring: &[PieceEdge], from: usize, to: usize) -> f64 {
+fn closing(parts: &[SeenCurve], ring: &[PieceEdge], from: usize, to: usize) -> f64 {
     let count = ring.len();
     let between = (to + count - from - 1) % count;
     let legs: Vec<usize> = (1..=between).map(|k| (from + k) % count).collect();
@@ -287,7 +299,7 @@ fn closing(parts: &[Part], ring: &[PieceEdge], from: usize, to: usize) -> f64 {
 }
 
 /// The curves of an edge joined into one line with the darts between closed, at equal arc lengths (m).
-fn joined(parts: &[Part], ring: &[PieceEdge], group: &[usize]) -> Vec<Vec2> {
+fn joined(parts: &[SeenCurve], ring: &[PieceEdge], group: &[usize]) -> Vec<Vec2> {
     let mut line = parts[group[0]].line.clone();
     let mut turned = 0.0_f64;
     for pair in group.windows(2) {
@@ -372,7 +384,7 @@ fn notches(
     piece: &Piece,
     origin: EdgeOrigin,
     group: &[usize],
-    parts: &[Part],
+    parts: &[SeenCurve],
     frame: &Frame,
 ) -> Vec<f64> {
     let own = piece.notches.iter().filter(|notch| notch.edge == origin);

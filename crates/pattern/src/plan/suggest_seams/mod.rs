@@ -44,8 +44,7 @@ const SEWN: f64 = -2.0;
 /// The pattern has more than [`MAX_SUGGESTED_EDGES`] edges.
 pub fn suggest_seams(evaluation: &Evaluation) -> Result<SeamSuggestions, EditError> {
     let (draft, _) = evaluation.draft();
-    let edges = SeamEdges::new(evaluation, &draft);
-    let count = edges.all.len();
+    let count = SeamEdges::count(&draft);
     if count > MAX_SUGGESTED_EDGES {
         return Err(impossible(
             format!(
@@ -54,6 +53,7 @@ pub fn suggest_seams(evaluation: &Evaluation) -> Result<SeamSuggestions, EditErr
             "suggest seams for a pattern of fewer pieces",
         ));
     }
+    let edges = SeamEdges::new(evaluation, &draft);
     let places = places::Places::new(&edges.all, &draft);
     let images = images::mirror_images(&edges.all, &|i, j| places.image_distance(i, j));
     let known = cost::Known {
