@@ -22,6 +22,9 @@ pub struct Flatten {
     /// to 12mm.
     #[arg(long, value_name = "LENGTH", requires = "loop_file")]
     pub edge: Option<Length>,
+    /// The panel follows the hollows of the region, as a glued sheet does; else its cloth is drawn straight over them.
+    #[arg(long, requires = "loop_file")]
+    pub follow_hollows: bool,
     /// Direction of the grain in space, as in 0,1,0. Default: upwards.
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub grain: Option<[f64; 3]>,

@@ -16,6 +16,7 @@ pub fn flatten(flatten: &Flatten, output: &Output) -> Result<Value, Failure> {
         ease: flatten.ease.as_metres(),
         loop_file: flatten.loop_file.clone(),
         edge: flatten.edge.as_ref().map(|edge| edge.as_metres()),
+        follows_hollows: flatten.follow_hollows,
     };
     let source = source(flatten)?;
     let report = flatten_to_panel(&source, &options, &flatten.out).map_err(|error| {

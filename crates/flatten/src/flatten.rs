@@ -2,13 +2,16 @@
 
 use crate::conformal::{conformal, flipped};
 use crate::dart::open;
-use crate::search::{State, next_dart};
+use crate::search::{LEGS_APART, State, next_darts};
 use crate::tutte::tutte;
 use crate::{
     Dart, FlattenError, Grain, MAX_STEPS, Minimum, Options, Region, RestEnergy, SHARE_WITHIN,
     Stretch, arap, minimise, stretch_of, stretch_quantile,
 };
 use toile_geometry::{TriangleMesh, Vec2};
+
+/// First darts that are followed up.
+const FOLLOWED: usize = 3;
 
 /// A panel.
 #[derive(Clone, Debug)]
@@ -56,44 +59,90 @@ pub fn flatten_region(region: Region, options: &Options) -> Result<Flattened, Fl
         });
     }
     let (places, from_tutte) = start(&region)?;
-    let mut state = State {
+    let state = State {
         region,
         places,
         darts,
     };
-    let mut before = Vec::new();
-    let (mut minimum, mut stretch, mut strain) = settle(&mut state, options)?;
-    while strain > options.strain && before.len() < options.darts {
-        let Some(mut next) = next_dart(&state, options, minimum.energy)? else {
-            break;
-        };
-        before.push([minimum.energy, strain]);
-        (minimum, stretch, strain) = settle(&mut next, options)?;
-        state = next;
-    }
+    let best = dressed(settled(state, Vec::new(), options)?, options)?;
     Ok(Flattened {
-        region: state.region,
-        places: state.places,
-        darts: state.darts,
-        stretch,
-        strain,
-        minimum,
-        before,
+        region: best.state.region,
+        places: best.state.places,
+        darts: best.state.darts,
+        stretch: best.stretch,
+        strain: best.strain,
+        minimum: best.minimum,
+        before: best.before,
         from_tutte,
     })
 }
 
-/// Brings a flat shape to rest: the end of the descent, the stretch of each triangle, and its size on most of the area.
-fn settle(
-    state: &mut State,
+/// A flat shape at rest.
+struct Settled {
+    state: State,
+    minimum: Minimum,
+    stretch: Vec<Stretch>,
+    strain: f64,
+    before: Vec<[f64; 2]>,
+}
+
+/// Adds darts until the stretch is within its limit, or no dart helps. One dart after another is chosen, and of the first
+/// ones several are followed up, as the best one alone need not be the best of two.
+fn dressed(first: Settled, options: &Options) -> Result<Settled, FlattenError> {
+    let mut open = vec![first];
+    for number in 0..options.darts {
+        let within = open.iter().any(|settled| settled.strain <= options.strain);
+        if within {
+            break;
+        }
+        let most = match number {
+            0 if options.darts > 1 => FOLLOWED,
+            _ => 1,
+        };
+        let mut longer = Vec::new();
+        for settled in &open {
+            let energy = settled.minimum.energy;
+            for next in next_darts(&settled.state, options, energy, most)? {
+                let mut before = settled.before.clone();
+                before.push([energy, settled.strain]);
+                let next = self::settled(next, before, options)?;
+                // Darts that came to lie over each other could not be sewn.
+                if next.state.darts_are_clear(LEGS_APART[1]) {
+                    longer.push(next);
+                }
+            }
+        }
+        if longer.is_empty() {
+            break;
+        }
+        open = longer;
+    }
+    let rank = |settled: &Settled| (settled.strain > options.strain, settled.minimum.energy);
+    let best = open.into_iter().min_by(|a, b| {
+        let (a, b) = (rank(a), rank(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    best.ok_or(FlattenError::NoStart)
+}
+
+/// Brings a flat shape to rest.
+fn settled(
+    mut state: State,
+    before: Vec<[f64; 2]>,
     options: &Options,
-) -> Result<(Minimum, Vec<Stretch>, f64), FlattenError> {
+) -> Result<Settled, FlattenError> {
     let grain = Grain::new(&state.region, options.grain)?;
     let energy = RestEnergy::new(&state.region, options.law);
     let minimum = minimise(&energy, &grain, &mut state.places, MAX_STEPS)?;
     let stretch = stretch_of(&state.region, &state.places);
     let strain = stretch_quantile(&state.region, &stretch, SHARE_WITHIN);
-    Ok((minimum, stretch, strain))
+    Ok(Settled {
+        state,
+        minimum,
+        stretch,
+        strain,
+        before,
+    })
 }
 
 /// A flat shape without flipped triangles, and whether it began with Tutte's embedding.

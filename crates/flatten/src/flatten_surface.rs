@@ -1,9 +1,12 @@
 //! A region of a surface to its panel: meshed anew, flattened, and its darts cut straight.
 
-use crate::{FlattenError, Flattened, Options, SurfaceRegion, flatten};
+use crate::{FlattenError, Flattened, MAX_EDGE, Options, SurfaceRegion, flatten};
 
 /// Largest energy of darts cut straight over that of darts along edges, for the straight ones to be kept (1).
 const MAX_COST: f64 = 1.1;
+
+/// Length of the edges on which darts are looked for, over the length that is asked for (1).
+const COARSE: f64 = 1.6;
 
 /// Flattens a region with triangles of about a length of edges (m). Its lines are cut first. Darts that are found along
 /// edges of the mesh are drawn again as shortest paths, and the region is meshed along them, so that their legs are straight.
@@ -15,8 +18,25 @@ pub fn flatten_surface(
     edge: f64,
     options: &Options,
 ) -> Result<Flattened, FlattenError> {
-    let found = flatten_drawn(region, edge, options)?;
     let drawn = region.cuts().len();
+    if options.darts == 0 {
+        return flatten_drawn(region, edge, options);
+    }
+    // Where darts lie is found on large triangles.
+    let coarse = flatten_drawn(region, (COARSE * edge).min(MAX_EDGE), options)?;
+    let has_darts = coarse.darts.len() > drawn;
+    let straight = (has_darts || coarse.strain <= options.strain)
+        .then(|| straightened(region, edge, options, &coarse))
+        .flatten();
+    if let Some(straight) =
+        straight.filter(|s| s.minimum.energy <= MAX_COST * coarse.minimum.energy)
+    {
+        return Ok(Flattened {
+            before: coarse.before,
+            ..straight
+        });
+    }
+    let found = flatten_drawn(region, edge, options)?;
     if found.darts.len() == drawn {
         return Ok(found);
     }

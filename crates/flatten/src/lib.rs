@@ -18,6 +18,7 @@ mod flatten;
 mod flatten_surface;
 mod geodesic;
 mod grain;
+mod hollows;
 mod loop_error;
 mod options;
 mod ordered;
@@ -48,5 +49,5 @@ pub use remesh::{MAX_EDGE, MAX_TRIANGLES, MIN_EDGE, Remeshed};
 pub use split_mesh::SplitMesh;
 pub use stretch::{Stretch, stretch_of, stretch_quantile};
 pub use surface_loop::{
-    MAX_CUTS, MAX_OFF, MAX_PLACES, MIN_PLACES, SurfaceLoop, SurfaceRegion, cut_out,
+    MAX_CUTS, MAX_OFF, MAX_PLACES, MIN_PLACES, SurfaceLoop, SurfaceRegion, cut_out, surface_path,
 };

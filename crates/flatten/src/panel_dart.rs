@@ -22,6 +22,15 @@ impl Dart {
         ring_area(&ring) > 0.0
     }
 
+    /// Its legs as they are sewn, straight from the mouth to the apex (m).
+    pub fn straight_legs(&self, places: &[Vec2]) -> Vec<[Vec2; 2]> {
+        let ends = |leg: &[u32]| Some([*leg.first()?, *leg.last()?].map(|v| places[v as usize]));
+        [&self.left, &self.right]
+            .into_iter()
+            .filter_map(|leg| ends(leg))
+            .collect()
+    }
+
     /// Distance of the ends of the legs at the mouth on the panel (m).
     pub fn intake(&self, places: &[Vec2]) -> f64 {
         match (self.left.first(), self.right.first()) {

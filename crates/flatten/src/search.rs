@@ -3,7 +3,7 @@
 
 use crate::dart::{Opened, open, shortest_ways, way_to};
 use crate::{Dart, FlattenError, Grain, Options, Region, RestEnergy, minimise};
-use toile_geometry::{Vec2, Vec3, closest_on_segment};
+use toile_geometry::{Vec2, Vec3, closest_on_segment, segment_distance, segments_cross};
 
 /// Places of the outline that are tried.
 const MOUTHS: usize = 20;
@@ -20,6 +20,9 @@ const SHORT_STEPS: usize = 8;
 /// Least distance of a mouth from corners of the outline and from other mouths, as a share of the outline's length (1).
 const APART: f64 = 0.04;
 
+/// Least distance of the mouths of darts that are followed up, as a share of the outline's length (1).
+const MOUTHS_APART: f64 = 0.08;
+
 /// Turn of the outline that makes a corner (rad).
 const CORNER: f64 = 0.5;
 
@@ -30,6 +33,10 @@ const MIN_GAIN: f64 = 0.02;
 /// a dart are sewn straight (1).
 const MAX_BOW: f64 = 0.12;
 
+/// Least distance of the straight legs of darts from those of others and of an apex from the outline, as a share of the
+/// outline's length (1): when a dart is chosen, and once the shape is at rest.
+pub const LEGS_APART: [f64; 2] = [0.008, 0.004];
+
 /// A surface with its flat shape and darts.
 pub struct State {
     pub region: Region,
@@ -38,6 +45,42 @@ pub struct State {
 }
 
 impl State {
+    /// Whether the darts, their legs straight, keep clear of each other and of the outline by a share of its length.
+    pub fn darts_are_clear(&self, share: f64) -> bool {
+        let mut in_dart = vec![false; self.places.len()];
+        for dart in &self.darts {
+            for &v in dart.left.iter().chain(&dart.right) {
+                in_dart[v as usize] = true;
+            }
+        }
+        let outline = self.region.outline();
+        let next = outline.iter().cycle().skip(1);
+        // Edges that end at a mouth touch its legs.
+        let edges = outline.iter().zip(next).filter_map(|(&a, &b)| {
+            let is_free = !in_dart[a as usize] && !in_dart[b as usize];
+            is_free.then(|| [a, b].map(|v| self.places[v as usize]))
+        });
+        let edges: Vec<[Vec2; 2]> = edges.collect();
+        let length: f64 = edges.iter().map(|[a, b]| (b - a).norm()).sum();
+        let near = share * length;
+        let legs = self
+            .darts
+            .iter()
+            .map(|dart| dart.straight_legs(&self.places));
+        let legs: Vec<Vec<[Vec2; 2]>> = legs.collect();
+        let is_apart = |own: &[[Vec2; 2]], other: &[[Vec2; 2]]| {
+            let mut pairs = own.iter().flat_map(|a| other.iter().map(move |b| (*a, *b)));
+            pairs.all(|(a, b)| segment_distance(a, b) > near)
+        };
+        let is_inside = |[mouth, apex]: [Vec2; 2]| {
+            let on = (apex - mouth).try_normalize(0.0).unwrap_or_default();
+            let leg = [mouth, apex + on * near];
+            edges.iter().all(|&edge| !segments_cross(leg, edge))
+        };
+        legs.iter().flatten().all(|&leg| is_inside(leg))
+            && (1..legs.len()).all(|k| legs[..k].iter().all(|other| is_apart(&legs[k], other)))
+    }
+
     /// The state with one more dart; the flat shape is the same, closed.
     pub fn opened(&self, path: &[u32]) -> Result<Self, FlattenError> {
         let Opened {
@@ -61,35 +104,48 @@ impl State {
     }
 }
 
-/// The state with the dart that lowers the energy most, not yet at rest; none where none is worth it.
+/// A dart that was tried.
+struct Trial {
+    energy: f64,
+    /// The state with the dart, not yet at rest.
+    state: State,
+    /// The whole way from the mouth to the target, of which the dart is the first part.
+    way: Vec<u32>,
+}
+
+/// The states with one more dart each that lower the energy most, not yet at rest, the best first; none where none is worth it.
+/// Their mouths lie apart.
 ///
 /// # Errors
 /// The triangles are too thin.
-pub fn next_dart(
+pub fn next_darts(
     state: &State,
     options: &Options,
     energy: f64,
-) -> Result<Option<State>, FlattenError> {
+    most: usize,
+) -> Result<Vec<State>, FlattenError> {
     let mesh = state.region.mesh();
     let mut barred = vec![false; mesh.positions.len()];
     for &v in state.region.outline() {
         barred[v as usize] = true;
     }
-    let mut best: Option<(f64, State, Vec<u32>)> = None;
-    let try_path = |path: &[u32], best: &mut Option<(f64, State, Vec<u32>)>, way: &[u32]| {
+    let try_path = |path: &[u32], way: &[u32]| {
         let mut trial = state.opened(path)?;
         let grain = Grain::new(&trial.region, options.grain)?;
         let law = RestEnergy::new(&trial.region, options.law);
         let found = minimise(&law, &grain, &mut trial.places, SHORT_STEPS)?;
         // Sides that overlap ask for a gusset: that is no dart.
-        if (trial.darts.last()).is_some_and(|dart| dart.overlaps(&trial.places)) {
-            return Ok(());
+        let is_gusset = (trial.darts.last()).is_some_and(|dart| dart.overlaps(&trial.places));
+        if is_gusset || !trial.darts_are_clear(LEGS_APART[0]) {
+            return Ok(None);
         }
-        if best.as_ref().is_none_or(|b| found.energy < b.0) {
-            *best = Some((found.energy, trial, way.to_vec()));
-        }
-        Ok::<(), FlattenError>(())
+        Ok::<_, FlattenError>(Some(Trial {
+            energy: found.energy,
+            state: trial,
+            way: way.to_vec(),
+        }))
     };
+    let mut trials: Vec<Trial> = Vec::new();
     for target in targets(state, options, &barred) {
         let (_, before) = ways_inside(mesh, target, &barred);
         for mouth in mouths(state) {
@@ -97,22 +153,43 @@ pub fn next_dart(
             way.reverse();
             let path = cut_short(&mesh.positions, &way, DEPTHS[FIRST_DEPTH]);
             if let Some(path) = path.filter(|path| is_straight(&state.places, path)) {
-                try_path(path, &mut best, &way)?;
+                trials.extend(try_path(path, &way)?);
             }
         }
     }
-    let Some((_, _, way)) = best.as_ref() else {
-        return Ok(None);
-    };
-    let way = way.clone();
-    for (k, depth) in DEPTHS.into_iter().enumerate() {
-        if let Some(path) = cut_short(&mesh.positions, &way, depth).filter(|_| k != FIRST_DEPTH) {
-            try_path(path, &mut best, &way)?;
+    trials.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    let mouth = |trial: &Trial| state.places[trial.way[0] as usize];
+    let apart = MOUTHS_APART * outline_length(state);
+    let mut chosen: Vec<Trial> = Vec::new();
+    for trial in trials {
+        let is_apart = |other: &Trial| (mouth(other) - mouth(&trial)).norm() > apart;
+        if chosen.len() < most && chosen.iter().all(is_apart) {
+            chosen.push(trial);
         }
     }
-    Ok(best
-        .filter(|b| b.0 < (1.0 - MIN_GAIN) * energy)
-        .map(|b| b.1))
+    for trial in &mut chosen {
+        let way = trial.way.clone();
+        for (k, depth) in DEPTHS.into_iter().enumerate() {
+            let path = cut_short(&mesh.positions, &way, depth).filter(|_| k != FIRST_DEPTH);
+            let other = path.map(|path| try_path(path, &way)).transpose()?.flatten();
+            if let Some(other) = other.filter(|other| other.energy < trial.energy) {
+                *trial = other;
+            }
+        }
+    }
+    chosen.retain(|trial| trial.energy < (1.0 - MIN_GAIN) * energy);
+    chosen.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    Ok(chosen.into_iter().map(|trial| trial.state).collect())
+}
+
+/// Length of the outline on the panel (m).
+fn outline_length(state: &State) -> f64 {
+    let outline = state.region.outline();
+    let next = outline.iter().cycle().skip(1);
+    let sides = outline.iter().zip(next);
+    sides
+        .map(|(&a, &b)| (state.places[b as usize] - state.places[a as usize]).norm())
+        .sum()
 }
 
 /// The vertex inside with the most energy about it, and the one deepest inside.

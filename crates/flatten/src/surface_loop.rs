@@ -90,6 +90,25 @@ pub fn cut_out(mesh: &TriangleMesh, asked: &SurfaceLoop) -> Result<SurfaceRegion
     Ok(region)
 }
 
+/// Places along the shortest path over a surface from one place to another, with both; each is taken to the nearest point
+/// of the surface (m).
+///
+/// # Errors
+/// The surface branches, a place is not on it, both are the same, or no path joins them.
+pub fn surface_path(mesh: &TriangleMesh, ends: [Vec3; 2]) -> Result<Vec<Vec3>, LoopError> {
+    let mut split = SplitMesh::new(mesh)?;
+    let tree = SurfaceTree::new(mesh.clone());
+    let [name, other] = [place_name(0), place_name(1)];
+    let (from, _) = vertex_at(&mut split, &tree, ends[0], &name)?;
+    let (to, _) = vertex_at(&mut split, &tree, ends[1], &other)?;
+    if from == to {
+        return Err(LoopError::Same(name, other));
+    }
+    let path = shortest_path(&split, from, to).ok_or(LoopError::Apart(name, other))?;
+    let places = path.into_iter().map(|node| node_place(&split, node));
+    Ok(places.collect())
+}
+
 /// The name of a place of a loop in messages.
 fn place_name(k: usize) -> String {
     format!("place {}", k + 1)

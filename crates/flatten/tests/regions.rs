@@ -6,8 +6,8 @@ mod common;
 use common::{grid, options};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_flatten::{
-    LoopError, Options, PathNode, Region, SplitMesh, SurfaceLoop, cut_out, flatten_surface,
-    shortest_path,
+    LoopError, Options, PathNode, Region, SplitMesh, SurfaceLoop, SurfaceRegion, cut_out,
+    flatten_surface, shortest_path, surface_path,
 };
 use toile_geometry::{TriangleMesh, Vec3};
 
@@ -124,6 +124,19 @@ fn paths_on_a_cylinder_and_a_ball_have_the_lengths_of_geodesics() {
         let found = length(&split, &path);
         assert!((found / arc - 1.0).abs() < 5e-3, "{found} {arc}");
     }
+}
+
+#[test]
+fn a_path_between_places_of_a_ball_is_a_great_circle() {
+    let ball = ball(16);
+    let ends = [on_ball(10.0, 5.0), on_ball(70.0, 40.0)];
+    let path = surface_path(&ball, ends).unwrap();
+    let length: f64 = path.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
+    let arc = 0.1 * (ends[0].dot(&ends[1]) / 0.01).acos();
+    assert!((length / arc - 1.0).abs() < 0.003, "{length} {arc}");
+    assert!((path[0] - ends[0]).norm() < 1e-3 && (path[path.len() - 1] - ends[1]).norm() < 1e-3);
+    let same = surface_path(&ball, [ends[0], ends[0]]);
+    assert!(matches!(same, Err(LoopError::Same(..))), "{same:?}");
 }
 
 #[test]
@@ -394,4 +407,85 @@ fn cuts_and_lengths_are_refused_by_name() {
             Err(LoopError::EdgeLength(..))
         ));
     }
+}
+
+/// The region of a sheet with a groove, whose depth falls off on both sides; it runs along y.
+fn grooved(depth: f64) -> SurfaceRegion {
+    let sheet = grid(40, 10, |u, v| {
+        let x = u - 0.5;
+        Vec3::new(0.4 * x, 0.1 * v, -depth * (-(x / 0.15).powi(2)).exp())
+    });
+    let at = |x: f64, y: f64| {
+        let u = x / 0.4;
+        Vec3::new(x, y, -depth * (-(u / 0.15).powi(2)).exp())
+    };
+    let asked = SurfaceLoop {
+        places: vec![
+            at(-0.19, 0.005),
+            at(0.19, 0.005),
+            at(0.19, 0.095),
+            at(-0.19, 0.095),
+        ],
+        inside: Some(at(0.0, 0.05)),
+        ..SurfaceLoop::default()
+    };
+    cut_out(&sheet, &asked).unwrap()
+}
+
+#[test]
+fn cloth_spans_a_groove_and_lies_on_a_ridge() {
+    let region = grooved(0.03);
+    let (spanning, deep) = region.spanning_hollows(0.0, 0.006, false).unwrap();
+    assert!((deep - 0.03).abs() < 0.002, "{deep}");
+    let flat = spanning.surface();
+    // Straight from rim to rim: as large as the sheet between the corners.
+    let farthest = flat.positions.iter().map(|p| p.z.abs());
+    let farthest = farthest.fold(0.0, f64::max);
+    assert!(farthest < 0.002, "{farthest}");
+    assert!(
+        (flat.area() / (0.38 * 0.09) - 1.0).abs() < 0.01,
+        "{}",
+        flat.area()
+    );
+    // Over a ridge the cloth lies on the top, and leaves it straight for the rim.
+    let ridge = grooved(-0.03);
+    let (lying, _) = ridge.spanning_hollows(0.004, 0.006, false).unwrap();
+    assert!(lying.surface().area() < ridge.moved_out(0.004).surface().area());
+    let top = lying
+        .surface()
+        .positions
+        .iter()
+        .map(|p| p.z)
+        .fold(0.0, f64::max);
+    assert!((top - 0.034).abs() < 5e-4, "{top}");
+}
+
+#[test]
+fn an_edge_in_the_middle_plane_is_the_middle_of_symmetrical_cloth() {
+    // Half of a groove, cut at its bottom: with its mirror image the cloth spans it, alone it is held down there.
+    let depth = 0.03;
+    let at = |x: f64, y: f64| Vec3::new(x, y, -depth * (-(x / 0.06).powi(2)).exp());
+    let half = grid(20, 10, |u, v| at(0.2 * u, 0.1 * v));
+    let asked = SurfaceLoop {
+        places: vec![
+            at(0.0, 0.005),
+            at(0.19, 0.005),
+            at(0.19, 0.095),
+            at(0.0, 0.095),
+        ],
+        inside: Some(at(0.1, 0.05)),
+        ..SurfaceLoop::default()
+    };
+    let region = cut_out(&half, &asked).unwrap();
+    let deepest = |is_symmetrical: bool| {
+        let (spanning, _) = region.spanning_hollows(0.0, 0.006, is_symmetrical).unwrap();
+        let surface = spanning.surface();
+        let middle = surface
+            .positions
+            .iter()
+            .filter(|p| p.x.abs() < 1e-3 && (p.y - 0.05).abs() < 0.01);
+        middle.map(|p| p.z).fold(f64::INFINITY, f64::min)
+    };
+    assert!(deepest(false) < -0.029, "{}", deepest(false));
+    assert!(deepest(true) > -0.001, "{}", deepest(true));
 }

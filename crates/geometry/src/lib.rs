@@ -55,7 +55,9 @@ pub use predicates::{
 pub use rings::{RingCrossings, Rings};
 pub use section::{closed_length, horizontal_section};
 pub use tree::{ClosestPoint, SurfaceTree};
-pub use triangle::{Feature, closest_point_on_triangle, tetrahedron_volume, triangle_area};
+pub use triangle::{
+    Feature, closest_point_on_triangle, ray_into_triangle, tetrahedron_volume, triangle_area,
+};
 pub use triangulate::{TriangulationError, delaunay_triangles, polygon_triangles};
 pub use units::{Angle, Duration, Length, UnitError};
 

@@ -21,6 +21,23 @@ pub fn triangle_area(corners: [Vec3; 3]) -> f64 {
         .norm()
 }
 
+/// Distance at which a ray enters a triangle from its front, the side from which its corners run counter-clockwise, in
+/// lengths of the direction; `None` where it misses (Möller and Trumbore 1997).
+pub fn ray_into_triangle(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let across = direction.cross(&ac);
+    let volume = ab.dot(&across);
+    if volume <= 0.0 {
+        return None;
+    }
+    let from = origin - a;
+    let u = from.dot(&across);
+    let turned = from.cross(&ab);
+    let v = direction.dot(&turned);
+    let distance = ac.dot(&turned) / volume;
+    (u >= 0.0 && v >= 0.0 && u + v <= volume && distance >= 0.0).then_some(distance)
+}
+
 /// Signed volume of the tetrahedron from the origin to the triangle (m3).
 pub fn tetrahedron_volume(corners: [Vec3; 3]) -> f64 {
     corners[0].dot(&corners[1].cross(&corners[2])) / 6.0
@@ -96,5 +113,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn rays_enter_a_triangle_from_its_front_alone() {
+        let corners = [Vec3::zeros(), Vec3::x(), Vec3::y()];
+        let from = Vec3::new(0.25, 0.25, 2.0);
+        let down = -Vec3::z() * 0.5;
+        assert_eq!(ray_into_triangle(from, down, corners), Some(4.0));
+        let behind = Vec3::new(0.25, 0.25, -2.0);
+        assert_eq!(ray_into_triangle(behind, -down, corners), None);
+        assert_eq!(ray_into_triangle(from, -down, corners), None);
+        assert_eq!(ray_into_triangle(from + Vec3::x(), down, corners), None);
+        assert_eq!(ray_into_triangle(from, Vec3::x(), corners), None);
     }
 }

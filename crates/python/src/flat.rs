@@ -85,10 +85,11 @@ impl Flat {
 /// the smaller side, is cut out and flattened. Default: the whole surface, which is a disk then.
 /// ease: distance by which the surface is moved out to its front first (metres).
 /// edge: length of the edges that the region of a loop is meshed with (metres); default: one that suits its size.
+/// follow_hollows: whether the panel follows the hollows of the region; else its cloth is drawn straight over them.
 #[pyfunction]
 #[pyo3(signature = (
     vertices, triangles, r#loop = None, *, name = "panel", fabric = None, strain = 0.02, darts = 0, grain = None, ease = 0.0,
-    edge = None
+    edge = None, follow_hollows = false
 ))]
 #[allow(clippy::too_many_arguments)]
 pub fn flatten(
@@ -103,6 +104,7 @@ pub fn flatten(
     grain: Option<[f64; 3]>,
     ease: f64,
     edge: Option<f64>,
+    follow_hollows: bool,
 ) -> PyResult<Flat> {
     let vertices: Vec<[f64; 3]> = triples("vertices", vertices.as_array().rows())?;
     let indices: Vec<[i64; 3]> = triples("triangles", triangles.as_array().rows())?;
@@ -127,6 +129,7 @@ pub fn flatten(
         ease,
         loop_file: None,
         edge,
+        follows_hollows: follow_hollows,
     };
     let places = r#loop.map(|places| triples("loop", places.as_array().rows()));
     let places: Option<Vec<[f64; 3]>> = places.transpose()?;

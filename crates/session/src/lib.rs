@@ -106,7 +106,8 @@ pub use export_format::{Export, ExportFormat};
 pub use fabrics::{FabricChoice, library_fabric, library_origin, with_hardening};
 pub use fitting::OpenedProject;
 pub use flattening::{
-    DartReport, FlatSurface, FlattenOptions, FlattenReport, SurfaceSource, flatten_to_panel,
+    DartReport, FlatSurface, FlattenOptions, FlattenReport, SkinLoop, SurfaceSource,
+    flatten_to_panel,
 };
 pub use frames_export::{FramesExport, FramesOutcome, export_frames};
 pub use garment_edit::{CannotFollow, GarmentEdit};

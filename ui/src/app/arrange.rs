@@ -257,7 +257,7 @@ impl ToileApp {
     }
 
     /// Adds the pasted parts to the pattern, selects them, and reports which numbers lost their formulas.
-    fn take_pasted(&mut self, pasted: Result<Pasted, EditError>, label: &str) {
+    pub(super) fn take_pasted(&mut self, pasted: Result<Pasted, EditError>, label: &str) {
         let pasted = match pasted {
             Ok(pasted) => pasted,
             Err(error) => {
@@ -312,13 +312,18 @@ impl ToileApp {
             }
         };
         let evaluation = Evaluation::new(&other.pattern, other.drafted_to());
-        let right = self.view.table_layout.bounds(&self.whole_scene());
-        let offset = right.map_or(Vec2::zeros(), |bounds| {
-            Vec2::new(bounds.max.x + 0.1, bounds.min.y)
-        });
-        let pasted = plan::insert_pattern(&self.base, &evaluation, offset.into());
+        let pasted = plan::insert_pattern(&self.base, &evaluation, self.place_beside());
         self.take_pasted(pasted, "Insert pattern");
         self.view.fit();
+    }
+
+    /// A place beside all there is on the table (m).
+    pub(super) fn place_beside(&self) -> [f64; 2] {
+        let right = self.view.table_layout.bounds(&self.whole_scene());
+        let beside = right.map_or(Vec2::zeros(), |bounds| {
+            Vec2::new(bounds.max.x + 0.1, bounds.min.y)
+        });
+        beside.into()
     }
 
     /// Groups of points that move together: one group for each selected part.

@@ -167,7 +167,8 @@ commands! {
         "Put the tool down, select nothing, or show all panels again",
         |app| {
             let shows_some = !app.view.isolated.is_empty();
-            app.has_selection() || shows_some || !matches!(app.view.tool, Tool::Select)
+            let has_tool = !matches!(app.view.tool, Tool::Select) || app.lays_loop();
+            app.has_selection() || shows_some || has_tool
         },
         ToileApp::deselect,
     );

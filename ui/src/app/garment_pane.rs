@@ -23,6 +23,12 @@ impl ToileApp {
             .resizable(false)
             .exact_size(STRIP)
             .show(ui, |ui| self.drape_strip(ui));
+        if self.lays_loop() {
+            Panel::top("region")
+                .frame(theme::bar(ui.ctx()))
+                .resizable(false)
+                .show(ui, |ui| self.region_bar(ui));
+        }
         let view = ui.available_rect_before_wrap();
         let empty = match self.background_work.is_making_body() {
             true => "Making the mannequin\u{2026}",
@@ -32,7 +38,9 @@ impl ToileApp {
             .set_out_of_date(self.background_work.is_out_of_date());
         self.stage.hides_body = self.background_work.is_on_another_body();
         self.stage.show(ui, empty);
-        self.drape_progress(ui, view);
+        if !self.lays_loop() {
+            self.drape_progress(ui, view);
+        }
     }
 
     pub(crate) fn drape_strip(&mut self, ui: &mut Ui) {

@@ -50,6 +50,7 @@ mod pick_file;
 mod preferences;
 mod print_choice;
 mod printing;
+mod region;
 mod save_choice;
 mod saving;
 mod sewing;
@@ -80,6 +81,7 @@ use notice::Notice;
 use panes::{InspectorPlace, Panes, Tables};
 use preferences::Preferences;
 use printing::Printing;
+use region::RegionChoice;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -104,6 +106,7 @@ pub struct ToileApp {
     pub(crate) search_choice: SearchChoice,
     pub(crate) background_work: BackgroundWork,
     pub(crate) printing: Option<Printing>,
+    pub(crate) region: RegionChoice,
     pub(crate) exporting: Option<Exporting>,
     /// Whether the window closes once files are written.
     pub(crate) waits_to_close: bool,
@@ -182,6 +185,7 @@ impl ToileApp {
             search_choice: SearchChoice::default(),
             background_work: BackgroundWork::default(),
             printing: None,
+            region: RegionChoice::default(),
             exporting: None,
             waits_to_close: false,
             exports: ExportMemory::default(),
@@ -516,6 +520,7 @@ impl ToileApp {
         self.follow_printing();
         self.follow_export();
         self.follow_search();
+        self.follow_region();
         self.refresh();
         self.name_window(&context);
         if std::mem::take(&mut self.wants_theme) {
@@ -530,7 +535,10 @@ impl ToileApp {
         self.show_dialog(&context);
         self.guard_closing(&context);
         self.field_had_keys = self.types(&context);
-        let works = self.printing.is_some() || self.is_exporting() || self.searching.is_some();
+        let works = self.printing.is_some()
+            || self.is_exporting()
+            || self.searching.is_some()
+            || self.region.is_busy();
         if self.background_work.is_busy() || works {
             context.request_repaint_after(FRAME);
         }

@@ -63,6 +63,9 @@ impl ToileApp {
 
     pub(crate) fn deselect(&mut self) {
         self.stop_printing();
+        if self.lays_loop() {
+            return self.leave_loop();
+        }
         self.notice = Notice::default();
         let shows_some = !self.view.isolated.is_empty();
         match self.view.tool {

@@ -509,6 +509,15 @@ commands! {
         |app| app.background_work.is_draping(),
         |app| app.background_work.stop(),
     );
+    REGION = command(
+        Menu::Garment,
+        "Panel from the mannequin",
+        key(SHIFT, Key::F6),
+        "Click places round a region of the mannequin, and make a panel that covers it",
+        ToileApp::is_open,
+        ToileApp::toggle_loop,
+    )
+    .on_while(ToileApp::lays_loop);
     WEARER = command(
         Menu::Garment,
         "Wearer",

@@ -85,6 +85,23 @@ impl Orbit {
             (1.12 * half / (FIELD / 2.0).tan() + depth).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
+    /// Direction from the eye through a place of the screen, both axes -1..=1 with y up, for a view of an aspect ratio.
+    pub fn toward(&self, [x, y]: [f64; 2], aspect: f64) -> Vec3 {
+        let [right, up] = self.axes();
+        let reach = (FIELD / 2.0).tan();
+        right * (x * reach * aspect) + up * (y * reach) - self.backward()
+    }
+
+    /// The place of the screen at which a point is seen, both axes -1..=1 with y up where it is in the view; `None` behind
+    /// the eye.
+    pub fn seen(&self, point: Vec3, aspect: f64) -> Option<[f64; 2]> {
+        let off = point - self.eye();
+        let [right, up] = self.axes();
+        let depth = -off.dot(&self.backward());
+        let reach = depth * (FIELD / 2.0).tan();
+        (depth > DEPTHS[0]).then(|| [off.dot(&right) / (reach * aspect), off.dot(&up) / reach])
+    }
+
     /// Matrix from world to clip space, column-major, depth 0 to 1, for a view of an aspect ratio (width
     /// over height).
     pub fn clip_from_world(&self, aspect: f64) -> [[f32; 4]; 4] {
@@ -140,6 +157,23 @@ mod tests {
         assert!(above[1] > 0.01 && above[0].abs() < 1e-6);
         let nearer = clip(&orbit, orbit.target + (orbit.eye() - orbit.target) * 0.5);
         assert!(nearer[2] < middle[2]);
+    }
+
+    #[test]
+    fn places_on_the_screen_and_rays_agree_with_the_picture() {
+        let orbit = Orbit {
+            yaw: 0.8,
+            pitch: -0.4,
+            ..Orbit::default()
+        };
+        let point = orbit.target + Vec3::new(0.2, -0.1, 0.3);
+        let [x, y, _] = clip(&orbit, point);
+        let seen = orbit.seen(point, 1.5).unwrap();
+        assert!((seen[0] - x).abs() < 1e-6 && (seen[1] - y).abs() < 1e-6);
+        let toward = orbit.toward(seen, 1.5);
+        assert!(toward.cross(&(point - orbit.eye())).norm() < 1e-9);
+        let behind = orbit.eye() * 2.0 - orbit.target;
+        assert_eq!(orbit.seen(behind, 1.5), None);
     }
 
     #[test]

@@ -112,8 +112,13 @@ pub fn mannequin(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
 pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
     let place = |p: &[f32; 3]| Vec3::from(p.map(f64::from));
     let positions: Vec<Vec3> = surface.positions.iter().map(place).collect();
-    let normals = normals(&positions, &surface.triangles);
-    let triangles = surface.triangles.iter().zip(&surface.colours);
+    shaded(&positions, &surface.triangles, &surface.colours)
+}
+
+/// Corners of triangles with a colour each (sRGB, 0..=1), lit from both sides.
+pub fn shaded(positions: &[Vec3], triangles: &[[u32; 3]], colours: &[[f64; 3]]) -> Vec<Corner> {
+    let normals = normals(positions, triangles);
+    let triangles = triangles.iter().zip(colours);
     let corners = triangles.flat_map(|(triangle, colour)| {
         let colour = colour.map(linear);
         triangle.map(|v| {
@@ -122,6 +127,16 @@ pub fn painted(surface: &RealtimeSurface) -> Vec<Corner> {
         })
     });
     corners.collect()
+}
+
+/// Corners of lines along paths.
+pub fn path_lines(paths: &[Vec<Vec3>], colour: egui::Color32) -> Vec<Corner> {
+    let [red, green, blue, _] = colour.to_array();
+    let colour = [red, green, blue].map(|c| linear(f64::from(c) / 255.0));
+    let pairs = paths.iter().flat_map(|path| path.windows(2));
+    let ends = pairs.flatten();
+    ends.map(|&at| Corner::new(at, Vec3::y(), colour, Finish::Plain))
+        .collect()
 }
 
 /// Triangles of the floor: a disc that fades into the background at the rim.

@@ -13,6 +13,7 @@ use crate::gpu::orbit::Orbit;
 use crate::gpu::solid::{ClothLook, ClothSolid, Corner, floor, mannequin};
 use crate::gpu::{CornerBuffer, StageRenderer};
 use crate::theme::{self, Palette};
+use crate::views::laid_loop::{LaidLoop, on_screen, ray};
 use eframe::egui_wgpu::RenderState;
 use egui::{Align2, CursorIcon, PointerButton, Rect, Response, Role, Sense, Ui, WidgetInfo};
 use std::sync::Arc;
@@ -39,7 +40,13 @@ pub struct GarmentView {
     line_buffer: CornerBuffer,
     vertices: usize,
     stale: Stale,
+    /// The loop that is laid on the mannequin; the cloth is hidden meanwhile.
+    pub laid: Option<LaidLoop>,
+    /// Why the last click laid no place.
+    refusal: Option<String>,
     wants_fit: bool,
+    /// The view in the last frame.
+    view: Option<Rect>,
     /// Size of the view to which the mannequin was fitted; `None` once the user has panned or zoomed.
     fitted: Option<egui::Vec2>,
     drawn: Option<Drawn>,
@@ -59,6 +66,7 @@ struct Drawn {
     size: [u32; 2],
     theme: egui::Theme,
     hides_body: bool,
+    has_loop: bool,
     id: egui::TextureId,
 }
 
@@ -76,6 +84,8 @@ impl GarmentView {
         self.body = mannequin(&skin.positions, &skin.triangles);
         let first = self.body_bounds.is_none();
         self.body_bounds = skin.bounds();
+        // A loop that was laid on another body is no loop of this one.
+        self.laid = self.laid.take().filter(|laid| laid.skin.is_on(skin));
         self.stale.body = true;
         self.wants_fit |= first;
     }
@@ -150,6 +160,31 @@ impl GarmentView {
         self.wants_fit = true;
     }
 
+    /// The place in the window at which a point of the scene (m) is seen.
+    pub fn place_on_screen(&self, point: Vec3) -> Option<egui::Pos2> {
+        on_screen(&self.orbit, self.view?, point)
+    }
+
+    /// Why the last click laid no place of a loop, once.
+    pub fn take_refusal(&mut self) -> Option<String> {
+        self.refusal.take()
+    }
+
+    /// Lays a place of the loop where the view was clicked.
+    fn lay_place(&mut self, ui: &Ui, view: Rect, response: &Response) {
+        let Some(laid) = &mut self.laid else { return };
+        if response.hovered() {
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+        }
+        let clicked = response.clicked().then(|| response.interact_pointer_pos());
+        let Some(at) = clicked.flatten() else { return };
+        let [eye, toward] = ray(&self.orbit, view, at);
+        match laid.skin.add(eye, toward) {
+            Ok(()) => laid.changed(Palette::of(ui.ctx())),
+            Err(words) => self.refusal = Some(words),
+        }
+    }
+
     /// Draws the view and handles its input.
     pub fn show(&mut self, ui: &mut Ui, empty: &str) {
         let view = ui.available_rect_before_wrap();
@@ -171,6 +206,8 @@ impl GarmentView {
             };
             WidgetInfo::labeled(Role::Canvas, true, words)
         });
+        self.view = Some(view);
+        self.lay_place(ui, view, &response);
         self.navigate(ui, &response);
         let resized = self.fitted.is_some_and(|size| size != view.size());
         if (self.wants_fit || resized)
@@ -190,6 +227,9 @@ impl GarmentView {
             Some(_) => "",
         };
         self.draw(ui, view);
+        if let Some(laid) = &self.laid {
+            laid.paint(&ui.painter().with_clip_rect(view), view, &self.orbit);
+        }
         if !words.is_empty() {
             ui.painter().text(
                 view.center(),
@@ -233,11 +273,11 @@ impl GarmentView {
         let theme = ui.ctx().theme();
         let palette = Palette::of(ui.ctx());
         let is_same_theme = self.drawn.is_some_and(|drawn| drawn.theme == theme);
-        let fresh = !self.stale.body && !self.stale.cloth && is_same_theme;
-        let (orbit, hides_body) = (self.orbit, self.hides_body);
-        let is_same = |drawn: &Drawn| {
-            (drawn.orbit, drawn.size, drawn.hides_body) == (orbit, size, hides_body)
-        };
+        let is_laid_stale = self.laid.as_ref().is_some_and(|laid| laid.is_stale);
+        let fresh = !self.stale.body && !self.stale.cloth && !is_laid_stale && is_same_theme;
+        let now = (self.orbit, size, self.hides_body, self.laid.is_some());
+        let is_same =
+            |drawn: &Drawn| (drawn.orbit, drawn.size, drawn.hides_body, drawn.has_loop) == now;
         let kept = self.drawn.filter(|drawn| fresh && is_same(drawn));
         let id = match kept {
             Some(drawn) => drawn.id,
@@ -256,17 +296,27 @@ impl GarmentView {
                 // The floor is hidden until there is a mannequin.
                 let floor = (!self.body.is_empty()).then_some(&self.floor_buffer);
                 let body = (!self.hides_body).then_some(&self.body_buffer);
-                let solids = body.into_iter().chain([&self.cloth_buffer]);
+                let (cloth, lines) = match &mut self.laid {
+                    None => (&self.cloth_buffer, &self.line_buffer),
+                    Some(laid) => {
+                        renderer.upload(&laid.lines, &mut laid.line_buffer);
+                        renderer.upload(&laid.strain, &mut laid.strain_buffer);
+                        laid.is_stale = false;
+                        (&laid.strain_buffer, &laid.line_buffer)
+                    }
+                };
+                let solids = body.into_iter().chain([cloth]);
                 let solids: Vec<_> = solids.chain(floor).collect();
                 let image = (size, palette.stage);
-                renderer.draw(&self.orbit, image, &solids, &self.line_buffer)
+                renderer.draw(&self.orbit, image, &solids, lines)
             }
         };
         self.drawn = Some(Drawn {
             orbit: self.orbit,
             size,
             theme,
-            hides_body,
+            hides_body: self.hides_body,
+            has_loop: self.laid.is_some(),
             id,
         });
         let whole = Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));

@@ -339,4 +339,5 @@ def flatten(
     grain: tuple[float, float, float] | None = None,
     ease: float = 0.0,
     edge: float | None = None,
+    follow_hollows: bool = False,
 ) -> Flat: ...

@@ -2,6 +2,7 @@
 
 use super::panel::panel_pattern;
 use super::report::{FlattenOptions, FlattenReport, report_on};
+use super::strain_map::strain_scale;
 use crate::{SessionError, fabrics};
 use std::path::Path;
 use toile_drape::MaterialLaws;
@@ -62,20 +63,51 @@ impl FlatSurface {
                     places: places.iter().map(|&place| place.into()).collect(),
                     ..SurfaceLoop::default()
                 };
-                Target::inside(&mesh, &asked, options, &mut notes)
+                Target::inside((&mesh, false), &asked, options, &mut notes)
                     .map_err(|words| format_error(path, "the loop", &words))?
             }
         };
         Self::of(&target, (path, name), (options, notes))
     }
 
+    /// Flattens the region of a skin inside a loop of places (m) to a panel of a fabric; that of the options is not read.
+    ///
+    /// # Errors
+    /// The region is no disk, or a number cannot be used.
+    pub(super) fn of_skin(
+        skin: &TriangleMesh,
+        places: &[Vec3],
+        fabric: Fabric,
+        (name, options): (&str, &FlattenOptions),
+    ) -> Result<Self, SessionError> {
+        check_ease(options.ease)?;
+        let path = Path::new("the mannequin");
+        let mut notes = Vec::new();
+        let asked = SurfaceLoop {
+            places: places.to_vec(),
+            ..SurfaceLoop::default()
+        };
+        let target = Target::inside((skin, true), &asked, options, &mut notes)
+            .map_err(|words| format_error(path, "the loop", &words))?;
+        Self::of_fabric(&target, (path, name), (options, notes), fabric)
+    }
+
     /// Flattens a mesh or a region of one, which `path` names in errors.
     pub(super) fn of(
         target: &Target,
-        (path, name): (&Path, &str),
+        names: (&Path, &str),
         (options, mut notes): (&FlattenOptions, Vec<String>),
     ) -> Result<Self, SessionError> {
         let fabric = chosen_fabric(options.fabric.as_deref(), &mut notes)?;
+        Self::of_fabric(target, names, (options, notes), fabric)
+    }
+
+    fn of_fabric(
+        target: &Target,
+        (path, name): (&Path, &str),
+        (options, mut notes): (&FlattenOptions, Vec<String>),
+        fabric: Fabric,
+    ) -> Result<Self, SessionError> {
         let flat = flattened(target, options, &fabric.material, path, &mut notes)?;
         let outline = panel_outline(&flat, TOLERANCE);
         let pattern = panel_pattern(name, fabric.clone(), &outline);
@@ -102,6 +134,19 @@ impl FlatSurface {
     /// Triangles of the panel and of the surface.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.flat.region.mesh().triangles
+    }
+
+    /// Colour of the stretch of each triangle.
+    pub fn colours(&self) -> Vec<[f64; 3]> {
+        let limit = self.report.stretch_limit;
+        let each = self.flat.stretch.iter();
+        each.map(|stretch| Self::colour_of(stretch.size(), limit))
+            .collect()
+    }
+
+    /// Colour of a stretch (1), sRGB, 0..=1: lightest as cut, darkest at the limit (1), another above.
+    pub fn colour_of(stretch: f64, limit: f64) -> [f64; 3] {
+        strain_scale(limit).colour(100.0 * stretch)
     }
 
     /// Relative change of length of each triangle from the panel to the surface, where it is most and where it is
@@ -140,12 +185,12 @@ impl Target {
         Self::Whole(moved_out(mesh, ease))
     }
 
-    /// The region inside a loop, moved out by the ease.
+    /// The region inside a loop of a surface, which may be its own mirror image, moved out by the ease.
     ///
     /// # Errors
     /// The words of the fault of the loop.
     pub fn inside(
-        mesh: &TriangleMesh,
+        (mesh, is_symmetrical): (&TriangleMesh, bool),
         asked: &SurfaceLoop,
         options: &FlattenOptions,
         notes: &mut Vec<String>,
@@ -157,9 +202,20 @@ impl Target {
                 region.farthest * 1e3
             ));
         }
-        let moved = region.moved_out(options.ease);
-        let edge = options.edge.unwrap_or_else(|| moved.default_edge());
-        Ok(Self::Region(Box::new(moved), edge))
+        let edge = options.edge.unwrap_or_else(|| region.default_edge());
+        if options.follows_hollows {
+            return Ok(Self::Region(Box::new(region.moved_out(options.ease)), edge));
+        }
+        let (spanning, farthest) = region
+            .spanning_hollows(options.ease, edge, is_symmetrical)
+            .map_err(|error| error.to_string())?;
+        if farthest > NEAR {
+            notes.push(format!(
+                "the cloth spans hollows of the surface, up to {:.0} mm deep",
+                farthest * 1e3
+            ));
+        }
+        Ok(Self::Region(Box::new(spanning), edge))
     }
 
     /// Length of the edges that a region is meshed with (m).

@@ -3,7 +3,8 @@
 //! # Decided with
 //! - [`toile_flatten::flatten`], [`toile_flatten::flatten_surface`]: the shape of least energy, darts; of a whole mesh, of a
 //!   region of one;
-//! - [`crate::flattening`] (`surface.rs`, `loop_file.rs`): meshes and bodies; places on them;
+//! - [`crate::flattening`] (`surface.rs`, `loop_file.rs`, `skin_loop.rs`): meshes and bodies; places on them, of a file and
+//!   clicked;
 //! - [`crate::flattening`] (`panel.rs`): the panel as a document;
 //! - [`crate::mesh_file`], [`crate::fabrics`]: meshes and fabrics of files.
 
@@ -11,6 +12,7 @@ mod flat_surface;
 mod loop_file;
 mod panel;
 mod report;
+mod skin_loop;
 mod strain_map;
 mod surface;
 
@@ -26,6 +28,7 @@ use toile_interchange::{write_all_atomically, write_document, write_obj};
 
 pub use flat_surface::FlatSurface;
 pub use report::{DartReport, FlattenOptions, FlattenReport};
+pub use skin_loop::SkinLoop;
 pub use surface::SurfaceSource;
 
 /// Flattens a surface, or the region of it within a loop, to a panel, and writes it as a pattern, with a report and a
@@ -54,7 +57,8 @@ pub fn flatten_to_panel(
         Some(path) => {
             let (asked, found) = open_loop(path, opened.mannequin.as_ref())?;
             notes.extend(found);
-            let region = Target::inside(&opened.mesh, &asked, options, &mut notes)
+            let surface = (&opened.mesh, opened.mannequin.is_some());
+            let region = Target::inside(surface, &asked, options, &mut notes)
                 .map_err(|words| format_error(path, "the loop", &words))?;
             (region, path.clone())
         }

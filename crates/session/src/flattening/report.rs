@@ -6,7 +6,7 @@ use toile_flatten::{Flattened, PanelOutline};
 use toile_interchange::FormatError;
 
 /// What is asked of a panel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlattenOptions {
     /// Direction of the grain in space; `None`: upwards, or along z where the surface lies flat.
     pub grain: Option<[f64; 3]>,
@@ -22,6 +22,8 @@ pub struct FlattenOptions {
     pub loop_file: Option<PathBuf>,
     /// Length of the edges that a region is meshed with (m); `None`: one that suits its size.
     pub edge: Option<f64>,
+    /// Whether the cloth of a region follows the hollows of the surface; else it spans them.
+    pub follows_hollows: bool,
 }
 
 /// A dart of the report.

@@ -5,15 +5,20 @@ use toile_flatten::Flattened;
 use toile_geometry::{TriangleMesh, Vec3};
 use toile_picture::{ColourMap, ColourScale, Finish, Legend, Paint, Scene, Sheet, Surface, View};
 
-/// The panel with the stretch of its cloth in colour, as PNG.
-pub(super) fn strain_map(flat: &Flattened, limit: f64) -> Result<Vec<u8>, SessionError> {
-    let high = 100.0 * limit.min(1.0);
-    let scale = ColourScale {
+/// Colours of the stretch in per cent, up to a limit (1).
+pub(super) fn strain_scale(limit: f64) -> ColourScale {
+    ColourScale {
         map: ColourMap::Heat,
         low: 0.0,
-        high,
+        high: 100.0 * limit.min(1.0),
         over: Some(ColourScale::OVER),
-    };
+    }
+}
+
+/// The panel with the stretch of its cloth in colour, as PNG.
+pub(super) fn strain_map(flat: &Flattened, limit: f64) -> Result<Vec<u8>, SessionError> {
+    let scale = strain_scale(limit);
+    let high = scale.high;
     let mesh = TriangleMesh {
         positions: (flat.places.iter())
             .map(|p| Vec3::new(p.x, p.y, 0.0))
