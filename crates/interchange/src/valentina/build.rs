@@ -64,8 +64,10 @@ pub(super) struct Build {
     pub wholes: HashMap<CurveId, Arc<CurveThing>>,
     /// Centres and radii of arcs.
     pub circles: HashMap<CurveId, (PointThing, Slot)>,
-    /// Points by their names.
-    pub named: HashMap<String, PointThing>,
+    /// Points by their names, the latest last: drawings may use a name again.
+    named: HashMap<String, Vec<PointThing>>,
+    /// Pairs of points that a tool joins by a line, by both names as in `A_B`; the latest of one name.
+    joined: HashMap<String, [PointThing; 2]>,
     /// Values that formulas name.
     pub symbols: HashMap<String, Symbol>,
     /// Numbers of parts of cut curves, under which the whole curve is known.
@@ -93,6 +95,7 @@ impl Build {
             wholes: HashMap::new(),
             circles: HashMap::new(),
             named: HashMap::new(),
+            joined: HashMap::new(),
             symbols: HashMap::new(),
             parts: BTreeSet::new(),
             quantities: HashMap::new(),
@@ -368,12 +371,39 @@ impl Build {
         self.symbols.insert(name, symbol);
     }
 
+    /// Gives a point a name for formulas.
+    pub fn name_point(&mut self, name: String, point: PointThing) {
+        self.named.entry(name).or_default().push(point);
+    }
+
+    /// Names the line by which a tool joins two points for formulas.
+    pub fn join(&mut self, ends: [PointThing; 2]) {
+        let [a, b] = ends.map(|end| self.file_name(end));
+        self.joined.insert(format!("{a}_{b}"), ends);
+    }
+
+    /// Names of curves by which formulas know a length, by its text.
+    pub fn names_of_length<'a>(&'a self, text: &'a str) -> impl Iterator<Item = &'a str> {
+        let all = self.symbols.iter();
+        let same = all.filter(move |(name, symbol)| {
+            symbol.text == text
+                && ["Spl", "Arc", "ElArc"]
+                    .iter()
+                    .any(|kind| name.starts_with(kind))
+        });
+        same.map(|(name, _)| name.as_str())
+    }
+
     /// The two points of a name such as `Line_A_B`; names of points may have underscores themselves.
     fn two_points(&self, rest: &str) -> Option<[PointThing; 2]> {
+        if let Some(joined) = self.joined.get(rest) {
+            return Some(*joined);
+        }
         let mut splits = rest.match_indices('_');
         splits.find_map(|(at, _)| {
-            let first = self.named.get(&rest[..at])?;
-            Some([*first, *self.named.get(&rest[at + 1..])?])
+            let firsts = self.named.get(&rest[..at])?;
+            let seconds = self.named.get(&rest[at + 1..])?;
+            latest_pair(firsts, seconds)
         })
     }
 
@@ -476,6 +506,21 @@ impl Scope for Build {
     fn unit(&self) -> FileUnit {
         self.unit
     }
+}
+
+/// Of points with two names, the pair of the latest drawing that has both; else the latest of each.
+fn latest_pair(firsts: &[PointThing], seconds: &[PointThing]) -> Option<[PointThing; 2]> {
+    let of_one_sheet = |first: &PointThing| {
+        let mut all = seconds.iter().rev();
+        let second = all.find(|second| second.sheet == first.sheet)?;
+        Some([*first, *second])
+    };
+    let pairs = firsts.iter().rev().filter_map(of_one_sheet);
+    let last = pairs.reduce(|best, next| match next[0].sheet > best[0].sheet {
+        true => next,
+        false => best,
+    });
+    last.or(Some([*firsts.last()?, *seconds.last()?]))
 }
 
 /// An attribute of an element.

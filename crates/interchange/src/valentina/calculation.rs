@@ -8,7 +8,7 @@ use super::operations;
 use super::points;
 use super::rounds;
 use super::splines;
-use super::things::{Made, Thing};
+use super::things::{Made, PointThing, Thing};
 use crate::xml::Xml;
 use roxmltree::Node;
 
@@ -62,6 +62,7 @@ fn line(build: &mut Build, node: Node<'_, '_>) -> Result<(), String> {
     ];
     let names = ends.map(|end| build.point_name(end));
     let name = format!("{} to {}", names[0], names[1]);
+    build.join(ends);
     // A line between points that are copies has its curve all the same.
     build.line_between(&name, ends);
     Ok(())
@@ -72,9 +73,43 @@ fn keep_point(build: &mut Build, node: Node<'_, '_>, made: Made) -> Result<(), S
     let made = made?;
     build.things.insert(id, Thing::Point(made));
     let name = node.attribute("name").unwrap_or_default();
-    build.named.insert(name.to_owned(), made);
+    build.name_point(name.to_owned(), made);
     build.file_names.insert(made.id, name.to_owned());
+    join(build, node, made);
     Ok(())
+}
+
+/// Names the lines that join a new point to those it is made from; each runs the way that formulas call it.
+fn join(build: &mut Build, node: Node<'_, '_>, made: PointThing) {
+    let (from, to): (&[&str], &[&str]) = match node.attribute("type").unwrap_or_default() {
+        "endLine" | "curveIntersectAxis" => (&["basePoint"], &[]),
+        "alongLine" => (&["firstPoint"], &["secondPoint"]),
+        "normal" => (&["firstPoint"], &[]),
+        "bisector" => (&["secondPoint"], &[]),
+        "height" | "lineIntersectAxis" => (&["basePoint", "p1Line"], &["p2Line"]),
+        "lineIntersect" => (&["p1Line1", "p1Line2"], &["p2Line1", "p2Line2"]),
+        "shoulder" => (&["p1Line", "p2Line", "pShoulder"], &[]),
+        "pointOfContact" => (&["firstPoint", "secondPoint", "center"], &[]),
+        _ => (&[], &[]),
+    };
+    let other = |build: &Build, attribute: &str| match build
+        .things
+        .get(&reference(node, attribute).ok()?)?
+    {
+        Thing::Point(point) => Some(*point),
+        Thing::Curve(_) => None,
+    };
+    for (attributes, is_start) in [(from, true), (to, false)] {
+        for attribute in attributes {
+            if let Some(other) = other(build, attribute) {
+                build.join(if is_start {
+                    [other, made]
+                } else {
+                    [made, other]
+                });
+            }
+        }
+    }
 }
 
 fn keep_curve(build: &mut Build, node: Node<'_, '_>, made: splines::Made) -> Result<(), String> {

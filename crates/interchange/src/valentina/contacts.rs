@@ -10,6 +10,9 @@ use std::sync::Arc;
 use toile_geometry::Vec2;
 use toile_pattern::{Number, PointRule};
 
+/// Share of the square of a radius by which a line or circle that touches a circle may miss it (1).
+const TOUCHING: f64 = 1e-12;
+
 /// Makes the point of a tool. `None`: the tool is none of these.
 pub(super) fn point(build: &mut Build, node: Node<'_, '_>, tool: &str) -> Option<Made> {
     Some(match tool {
@@ -39,16 +42,19 @@ pub(super) fn fixed(build: &mut Build, name: &str, at: Vec2) -> PointThing {
     build.add_point(name, PointRule::at(at.x, at.y), at)
 }
 
+/// The second leg of a right triangle (m). `None`: its hypotenuse is shorter than its first leg.
+fn leg(hypotenuse: f64, first: f64) -> Option<f64> {
+    let square = (hypotenuse - first) * (hypotenuse + first);
+    // Where a line or a circle only touches a circle, rounding may leave a square just below zero.
+    (square >= -TOUCHING * hypotenuse * hypotenuse).then(|| square.max(0.0).sqrt())
+}
+
 /// Distances from the start of a line to both places at a distance from a centre, the nearer one first (m).
 fn on_line(line: [Vec2; 2], centre: Vec2, distance: f64) -> Result<[f64; 2], String> {
     let way = unit(line[1] - line[0])?;
     let middle = way.dot(&(centre - line[0]));
     let aside = way.perp(&(centre - line[0]));
-    let half = distance * distance - aside * aside;
-    if half < 0.0 {
-        return Err("the line is farther away than the distance".to_owned());
-    }
-    let half = half.sqrt();
+    let half = leg(distance, aside).ok_or("the line is farther away than the distance")?;
     Ok([middle - half, middle + half])
 }
 
@@ -163,11 +169,8 @@ fn of_two_distances(centres: [Vec2; 2], distances: [f64; 2]) -> Result<[Vec2; 2]
     let unit = unit(way)?;
     let [r, s] = distances;
     let along = (between * between + r * r - s * s) / (2.0 * between);
-    let aside = r * r - along * along;
-    if aside < 0.0 {
-        return Err("the two circles do not meet".to_owned());
-    }
-    let left = Vec2::new(-unit.y, unit.x) * aside.sqrt();
+    let aside = leg(r, along).ok_or("the two circles do not meet")?;
+    let left = Vec2::new(-unit.y, unit.x) * aside;
     let foot = centres[0] + unit * along;
     Ok([foot + left, foot - left])
 }
@@ -387,7 +390,7 @@ pub(super) fn true_darts(build: &mut Build, node: Node<'_, '_>) -> Result<(), St
     let other = build.add_point(names[1], rule, turned(made.at, -turn));
     for ((id, name), point) in ids.into_iter().zip(names).zip([made, other]) {
         build.things.insert(id, Thing::Point(point));
-        build.named.insert(name.to_owned(), point);
+        build.name_point(name.to_owned(), point);
         build.file_names.insert(point.id, name.to_owned());
     }
     Ok(())

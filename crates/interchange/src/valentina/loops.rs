@@ -24,7 +24,8 @@ struct Crossing {
     /// Lengths from the starts of both (m).
     along: [f64; 2],
     at: Vec2,
-    /// The start of the later stretch, where it lies on the earlier one and goes on along it.
+    /// The corner that is there already: the start of the later stretch, where it lies on the earlier one and
+    /// goes on along it, or the end of the earlier one, to which the outline returns.
     corner: Option<PointThing>,
 }
 
@@ -35,6 +36,7 @@ pub(super) fn leave_out_loops(build: &mut Build, outline: &mut Outline) -> usize
         return 0;
     }
     let mut count = leave_out_slits(&mut outline.stretches);
+    count += usize::from(leave_out_start(&mut outline.stretches));
     let mut from = 0;
     while let Some(found) = first_crossing(&outline.stretches, from) {
         let [i, j] = found.stretches;
@@ -52,6 +54,11 @@ pub(super) fn leave_out_loops(build: &mut Build, outline: &mut Outline) -> usize
                 continue;
             }
         };
+        if is_tip(&outline.stretches, &found) {
+            leave_out_tip(&mut outline.stretches, &found, corner);
+            count += 1;
+            continue;
+        }
         let start = &mut outline.stretches[i];
         start.path = start.path.between(0.0, found.along[0]);
         start.ends[1] = corner;
@@ -90,6 +97,51 @@ fn leave_out_slits(stretches: &mut Vec<Stretch>) -> usize {
     count
 }
 
+/// Leaves out what lies before the last return to the first corner; says whether there was such a return.
+fn leave_out_start(stretches: &mut Vec<Stretch>) -> bool {
+    let Some(first) = stretches.first().map(|one| one.ends[0]) else {
+        return false;
+    };
+    let returns = |one: &Stretch| is_same_place(one.ends[0].at, first.at);
+    let last = stretches.iter().rposition(returns);
+    // A single stretch is no outline.
+    let last = last.filter(|&last| last > 0 && last + 2 <= stretches.len());
+    if let Some(last) = last {
+        stretches[last].ends[0] = first;
+        stretches.drain(..last);
+    }
+    last.is_some()
+}
+
+/// Whether the last stretch crosses the first nearer to their common corner, along both, than to the rest.
+fn is_tip(stretches: &[Stretch], found: &Crossing) -> bool {
+    let [i, j] = found.stretches;
+    let Some((first, last)) = stretches.first().zip(stretches.last()) else {
+        return false;
+    };
+    let is_short = |along: f64, of: &Stretch| along < of.path.length() / 2.0;
+    i == 0
+        && j + 1 == stretches.len()
+        && is_short(found.along[0], first)
+        && is_short(last.path.length() - found.along[1], last)
+}
+
+/// Leaves out the tip in which an outline begins and ends: it begins and ends where that crosses itself.
+fn leave_out_tip(stretches: &mut [Stretch], found: &Crossing, corner: PointThing) {
+    if let Some(first) = stretches.first_mut() {
+        first.path = first.path.between(found.along[0], first.path.length());
+        first.ends[0] = corner;
+    }
+    if let Some(last) = stretches.last_mut() {
+        last.path = last.path.between(0.0, found.along[1]);
+        last.ends[1] = corner;
+    }
+}
+
+fn is_same_place(a: Vec2, b: Vec2) -> bool {
+    (a - b).norm() <= SAME_PLACE
+}
+
 /// Whether stretches that close by themselves hold next to nothing between them.
 fn is_slit(stretches: &[Stretch]) -> bool {
     let curves = stretches.iter().flat_map(|one| one.path.curves());
@@ -111,7 +163,11 @@ fn first_crossing(stretches: &[Stretch], from: usize) -> Option<Crossing> {
     for i in from..stretches.len() {
         let others = (i + 1..stretches.len()).filter(|&j| meet(i, j));
         let found = others.filter_map(|j| crossing(stretches, [i, j]));
-        let first = found.min_by(|a, b| a.along[0].total_cmp(&b.along[0]));
+        // Of several returns to one corner the last counts.
+        let first = found.min_by(|a, b| {
+            let order = a.along[0].total_cmp(&b.along[0]);
+            order.then(b.stretches[1].cmp(&a.stretches[1]))
+        });
         if first.is_some() {
             return first;
         }
@@ -131,21 +187,32 @@ fn crossing(stretches: &[Stretch], [i, j]: [usize; 2]) -> Option<Crossing> {
             corner: Some(corner),
         });
     }
+    let corner = a.ends[1];
+    let returns = j > i + 1 && is_same_place(corner.at, b.ends[0].at);
+    let back = returns.then(|| Crossing {
+        stretches: [i, j],
+        along: [a.path.length(), 0.0],
+        at: corner.at,
+        corner: Some(corner),
+    });
     if a.curve == b.curve {
-        return None;
+        return back;
     }
-    let ends = [a.ends[0].at, a.ends[1].at, b.ends[0].at, b.ends[1].at];
+    // Where a begins, the stretch before it meets b already; where b ends, a meets the stretch after it.
+    let [start, end] = [a.ends[0].at, b.ends[1].at];
+    let shared = [corner.at, b.ends[0].at];
     let all = a.path.crossings(&b.path).into_iter();
     let mut inner = all.filter(|one| {
-        let apart = |end: &Vec2| (one.point - end).norm() > NEAR_ENDS;
-        ends.iter().all(apart)
+        let is_near = |at: &Vec2| (one.point - at).norm() <= NEAR_ENDS;
+        !(is_near(&start) || is_near(&end) || shared.iter().all(is_near))
     });
-    inner.next().map(|one| Crossing {
+    let inner = inner.next().map(|one| Crossing {
         stretches: [i, j],
         along: [one.here.along, one.there.along],
         at: one.point,
         corner: None,
-    })
+    });
+    inner.or(back)
 }
 
 /// Length along a straight stretch at which another begins that goes on along it, past its end or not.

@@ -168,9 +168,9 @@ fn carry(
             let point = build.on_this_sheet(point);
             let made = moving.point(build, point)?;
             let name = format!("{}{}", build.file_name(point), moving.suffix);
-            build.named.insert(name, made);
+            build.name_point(name, made);
             for name in names {
-                build.named.insert(name.to_owned(), made);
+                build.name_point(name.to_owned(), made);
             }
             Thing::Point(made)
         }
@@ -337,8 +337,17 @@ impl Moving {
     }
 
     /// Names in formulas of the image of a curve, in newer and older files.
-    fn names_of(&self, made: &CurveThing, of: &CurveThing, number: u32) -> Vec<String> {
+    fn names_of(
+        &self,
+        build: &Build,
+        made: &CurveThing,
+        of: &CurveThing,
+        number: u32,
+    ) -> Vec<String> {
         let mut names = vec![made.name.clone(), format!("{}{}", of.name, self.suffix)];
+        // An image of an image has its name from each name that the first image has.
+        let all = build.names_of_length(&of.length);
+        names.extend(all.map(|name| format!("{name}{}", self.suffix)));
         if let Some((start, _)) = of
             .name
             .rsplit_once('_')
@@ -374,7 +383,7 @@ impl Moving {
             }
         };
         let text = made.length.clone();
-        for name in self.names_of(&made, curve, number) {
+        for name in self.names_of(build, &made, curve, number) {
             build.name_length(name, &text, made.path.length());
         }
         Ok(made)

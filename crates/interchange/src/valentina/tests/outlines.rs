@@ -140,6 +140,52 @@ fn loops_of_an_outline_are_left_out_from_its_first_node_on() {
 }
 
 #[test]
+fn an_outline_that_returns_to_a_corner_or_touches_itself_goes_on_from_there() {
+    let corner = |id: u32, x: f64, y: f64| {
+        format!(
+            "<point type='single' id='{id}' name='N{id}' x='{x}' y='{}'/>",
+            -y
+        )
+    };
+    let tools: String = [
+        corner(20, 10.0, 6.0),
+        corner(21, 5.0, 6.0),
+        corner(22, 3.0, 3.0),
+        corner(23, 7.0, 3.0),
+        corner(24, 0.0, 6.0),
+        corner(25, -3.0, -3.0),
+        corner(26, 3.0, -3.0),
+        corner(27, 4.0, 6.0),
+        corner(28, 4.0, 0.0),
+        corner(29, 2.0, 3.0),
+    ]
+    .concat();
+    for (what, ids, wanted) in [
+        ("a dart", [1, 2, 20, 21, 22, 23, 21, 24], 60.0),
+        ("two darts", [1, 2, 21, 22, 21, 23, 21, 24], 45.0),
+        ("the start", [1, 25, 26, 1, 2, 20, 21, 24], 60.0),
+        ("a touched line", [1, 2, 20, 27, 28, 29, 24, 24], 12.0),
+    ] {
+        let nodes = ids.map(|id| ("Point", id, ""));
+        check(what, &piece(&tools, &nodes), wanted, 1);
+    }
+}
+
+#[test]
+fn a_tip_in_which_the_ends_of_an_outline_cross_is_left_out() {
+    // A line that meets the arc 2 degrees after the start of that, and ends at that start.
+    let (sin, cos) = 1_f64.to_radians().sin_cos();
+    let far = 10.0 - 10.0 * sin / cos;
+    let corner = format!("<point type='single' id='20' name='N' x='{far}' y='-10'/>");
+    let nodes = [("Arc", 5, ""), ("Point", 3, ""), ("Point", 20, "")];
+    let reading = piece(&format!("{ARC}{corner}"), &nodes);
+    let (sin, cos) = 2_f64.to_radians().sin_cos();
+    let sector = 88_f64.to_radians() * 50.0;
+    let twice = -10.0 * far + far * 10.0 * sin - 10.0 * 10.0 * cos;
+    check("tip", &reading, -(sector + twice / 2.0), 1);
+}
+
+#[test]
 fn a_slit_of_an_outline_is_left_out() {
     let corner = |id: u32, x: f64, y: f64| {
         format!(

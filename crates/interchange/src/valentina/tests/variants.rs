@@ -1,6 +1,6 @@
 //! Variants of tools: values out of reach, older and newer attributes, each against a place by hand.
 
-use super::{ARC, AXES, assert_near, check_tool, file, place, read};
+use super::{ARC, AXES, assert_near, check_tool, evaluated, file, place, read};
 
 /// A file of a version, with tools after the axes.
 fn of_version(version: &str, tools: &str) -> String {
@@ -52,6 +52,53 @@ fn a_triangle_has_its_corner_on_an_axis_that_passes_between_its_points() {
     // Both points on one side: where their line meets the axis.
     let aside = ends([3.0, 2.0], [9.0, 1.0]);
     check_told(&format!("{aside}{tool}"), [15.0, 0.0]);
+}
+
+#[test]
+fn circles_that_touch_a_line_or_each_other_but_for_rounding_have_their_point() {
+    let contact = "<point type='pointOfContact' id='9' name='P' firstPoint='2' secondPoint='3' center='1' \
+        radius='50^0.5*0.99999999999999'/>";
+    check_tool(contact, [5.0, 5.0]);
+    let circles = "<point type='pointOfIntersectionCircles' id='9' name='P' c1Center='1' c2Center='2' c1Radius='6' \
+        c2Radius='4*0.99999999999999' crossPoint='1'/>";
+    check_tool(circles, [6.0, 0.0]);
+}
+
+#[test]
+fn a_length_of_two_names_is_that_of_the_latest_line_between_such_points() {
+    // Where no tool joins two points, the latest drawing with both names counts: Y to O, 11 cm there.
+    let second = "<draw name='second'><calculation><point type='single' id='21' name='O' x='3' y='0'/>\
+        <point type='endLine' id='22' name='P' basePoint='21' angle='0' length='Line_O_X'/>\
+        <point type='endLine' id='23' name='X' basePoint='21' angle='90' length='4'/>\
+        <point type='endLine' id='24' name='Q' basePoint='21' angle='0' length='Line_O_X'/>\
+        <point type='endLine' id='25' name='Y' basePoint='22' angle='0' length='1'/>\
+        <point type='endLine' id='26' name='R' basePoint='21' angle='0' length='Line_O_Y+Line_Y_O'/>\
+        </calculation></draw></pattern>";
+    let reading = read(&file("", AXES, "").replace("</pattern>", second));
+    let sheet = &reading.pattern.sheets[1];
+    let evaluation = evaluated(&reading);
+    for (name, at) in [("P", [13.0, 0.0]), ("Q", [7.0, 0.0]), ("R", [24.0, 0.0])] {
+        let point = sheet.point_named(name).unwrap();
+        assert_near(evaluation.point(point.id).unwrap() * 100.0, at, name);
+    }
+}
+
+#[test]
+fn an_image_of_an_image_is_known_by_both_suffixes_after_the_name_of_the_curve() {
+    let moved = |id: u32, suffix: &str, from: u32| {
+        format!(
+            "<operation type='moving' id='{id}' angle='90' length='3' suffix='{suffix}'><source><item idObject='{from}'/>\
+             </source><destination><item idObject='{}'/></destination></operation>",
+            id + 1
+        )
+    };
+    let tools = format!(
+        "<spline type='simpleInteractive' id='20' point1='1' point4='2' angle1='0' angle2='180' length1='3' length2='3'/>\
+         {}{}<point type='endLine' id='9' name='P' basePoint='1' angle='0' length='Spl_O_Xa1b1/2'/>",
+        moved(30, "a1", 20),
+        moved(40, "b1", 31)
+    );
+    check_tool(&tools, [5.0, 0.0]);
 }
 
 #[test]
