@@ -7,6 +7,8 @@ const EVEN: f64 = 1e-4;
 /// Shares of the length of an edge at which its distance to the cut line is taken: away from its corners, at
 /// which the cut line turns.
 const SHARES: [f64; 7] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
+/// Share of the length of an edge to both sides of a place that tells its direction there.
+const NEAR: f64 = 0.01;
 
 /// Width of the allowance along an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,9 +25,42 @@ pub(crate) enum Width {
 }
 
 /// Width of the allowance along an edge of the sew line, given by the vertices of both lines. Both lines run
-/// counter-clockwise.
+/// counter-clockwise. Where a wide allowance ends in a slope, its foot is nearer to a short edge than the line beside
+/// it, which then tells the width.
 pub(crate) fn width(edge: &[Vec2], cut_line: &[Vec2]) -> Width {
-    let distances = SHARES.map(|share| distance(point_at(edge, share), cut_line));
+    let nearest = of_distances(SHARES.map(|share| distance(point_at(edge, share), cut_line)));
+    let is_even = |width: &Width| matches!(width, Width::Even(_));
+    let beside = || {
+        let ways = SHARES.map(|share| distance_beside(edge, share, cut_line));
+        let all = ways.iter().all(Option::is_some);
+        let found = all.then(|| of_distances(ways.map(Option::unwrap_or_default)));
+        found.filter(is_even)
+    };
+    match is_even(&nearest) {
+        true => nearest,
+        false => beside().unwrap_or(nearest),
+    }
+}
+
+/// The distance from a place on an edge, square to it and to its right, to a closed line; `None` if it is not met.
+fn distance_beside(edge: &[Vec2], share: f64, ring: &[Vec2]) -> Option<f64> {
+    let at = point_at(edge, share);
+    let [from, to] = [share - NEAR, share + NEAR].map(|share| point_at(edge, share));
+    let along = (to - from).normalize();
+    let out = Vec2::new(along.y, -along.x);
+    let next = ring.iter().cycle().skip(1);
+    let ways = ring.iter().zip(next).filter_map(|(&a, &b)| {
+        let [a, b] = [a - at, b - at];
+        let [before, after] = [along.dot(&a), along.dot(&b)];
+        let share = before / (before - after);
+        let way = out.dot(&(a + (b - a) * share));
+        (before * after <= 0.0 && way > 0.0).then_some(way)
+    });
+    let nearest = ways.fold(f64::INFINITY, f64::min);
+    nearest.is_finite().then_some(nearest)
+}
+
+fn of_distances(distances: [f64; SHARES.len()]) -> Width {
     let [low, high] = distances
         .iter()
         .fold([f64::INFINITY, 0.0f64], |[low, high], &d| {
@@ -121,6 +156,24 @@ mod tests {
         assert!(
             matches!(super::width(&edge, &slanted), Width::Uneven { mean, spread } if (mean - 0.015).abs() < 1e-4 && spread > 1e-3)
         );
+    }
+
+    #[test]
+    fn a_wide_allowance_of_a_short_edge_that_ends_in_slopes_is_even() {
+        // A hem of 30 mm between sides of 10 mm; no slope is parallel to the edge.
+        let edge = [Vec2::new(0.0, 0.0), Vec2::new(0.06, 0.0)];
+        let hem = [
+            [-0.01, 0.0],
+            [0.0, -0.03],
+            [0.06, -0.03],
+            [0.07, 0.0],
+            [0.07, 0.3],
+            [-0.01, 0.3],
+        ];
+        let Width::Even(found) = width(&edge, &hem.map(Vec2::from)) else {
+            panic!("even");
+        };
+        assert!((found - 0.03).abs() < 1e-12);
     }
 
     #[test]

@@ -7,6 +7,8 @@ use toile_geometry::Vec2;
 
 /// Largest distance of a notch from the line of an edge that it belongs to beyond the corner (m).
 const ON_LINE: f64 = 2e-4;
+/// Largest distance of a notch from the sew line that still lies on it, not on the cut line (m).
+const ON_SEW_LINE: f64 = 1e-3;
 /// Distances from a notch that differ by less count as one (m): at an allowance of 10 mm this is 1 mm along the
 /// line, nearer than notches are set to a corner.
 const AS_NEAR: f64 = 5e-5;
@@ -111,7 +113,7 @@ fn corner_of(place: Vec2, chords: &Chords, corners: &[usize]) -> Option<usize> {
     // other place.
     let nearest = nearest(place, vertices).map_or(0.0, |found| found.distance);
     // A place on the line itself belongs there, though another edge may point at it.
-    let is_apart = nearest > ON_LINE;
+    let is_apart = nearest > ON_SEW_LINE;
     let is_as_near = |corner: usize| (vertices[corner] - place).norm() <= nearest + AS_NEAR;
     let mut all = corners.iter().copied();
     all.find(|&vertex| {
@@ -166,6 +168,7 @@ mod tests {
         assert_eq!(place([0.15, 0.0]), Some(OutlinePlace::Corner(2)));
         assert_between([0.0, 0.05], [5, 0], 0.5);
         assert_between([0.05, 0.0], [0, 2], 1.0 / 3.0);
+        assert_between([0.18, 8e-4], [2, 3], 0.2);
     }
 
     #[test]

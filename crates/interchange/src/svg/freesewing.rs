@@ -14,11 +14,13 @@ use toile_pattern::{Cut, NotchKind};
 const GAP: f64 = 0.03;
 /// Farthest that an end of the allowance's line lies from the sew line (mm).
 const MAX_REACH: f64 = 100.0;
+/// Longest way between the ends of an allowance's line that goes round the sew line, over their distance from it (1).
+const MAX_GAP_WIDTHS: f64 = 3.0;
 /// Classes of the materials that parts are cut from.
 const MATERIALS: [&str; 5] = ["fabric", "lining", "interfacing", "canvas", "various"];
 /// Classes of lines that are no outline, though of a material.
-const NO_OUTLINE: [&str; 8] = [
-    "sa", "help", "dashed", "dotted", "lashed", "hidden", "note", "mark",
+const NO_OUTLINE: [&str; 10] = [
+    "sa", "help", "dashed", "dotted", "lashed", "hidden", "note", "mark", "contrast", "scalebox",
 ];
 /// Most pieces that a note of cutting may ask for.
 const MAX_QUANTITY: u32 = 100;
@@ -67,14 +69,17 @@ fn piece(
         None
     })?;
     let region = Region::of(&sew);
-    let allowance: Vec<DrawnLine> = own
-        .iter()
-        .filter(|(.., element)| element.has("sa") && element.has(material))
-        .map(|(_, line, _)| line.shape.clone())
-        .collect();
+    let ring = sew.chords(0).points;
+    let allowance = allowance(&own, material);
     let cut = match allowance.is_empty() {
         true => None,
-        false => Some(cut_line(&sew, joined(allowance, GAP))),
+        false => {
+            let lines = joined(allowance, GAP).into_iter();
+            Some(cut_line(
+                &sew,
+                lines.map(|line| around(line, &ring)).collect(),
+            ))
+        }
     };
     let (quantity, materials) = quantity(drawing, group);
     let mut piece = SvgPiece {
@@ -119,7 +124,6 @@ fn piece(
         }
     }
     // Signs inside the piece match no edge: they become no notches, and are told.
-    let ring = sew.chords(0).points;
     let is_on_line = |at: Vec2| nearest(at, &ring).is_some_and(|found| found.distance <= 1.0);
     let all = piece.notches.len();
     piece.notches.retain(|(at, _)| is_on_line(*at));
@@ -158,16 +162,37 @@ fn piece(
     Some(piece)
 }
 
+/// The material that a line is drawn for by its classes; `None` if they name none.
+fn material_of(element: &Element) -> Option<&'static str> {
+    MATERIALS.into_iter().find(|class| element.has(class))
+}
+
+/// The lines of the allowance of a part that is cut from a material: those of that material, else those of none,
+/// else those of the first material that has any.
+fn allowance(own: &[(usize, &Line, &Element)], material: Option<&str>) -> Vec<DrawnLine> {
+    let others = MATERIALS.into_iter().map(Some);
+    let mut materials = [material, None].into_iter().chain(others);
+    let of = |material: Option<&str>| -> Vec<DrawnLine> {
+        own.iter()
+            .filter(|(.., element)| element.has("sa") && material_of(element) == material)
+            .map(|(_, line, _)| line.shape.clone())
+            .collect()
+    };
+    let found = materials.find_map(|material| Some(of(material)).filter(|lines| !lines.is_empty()));
+    found.unwrap_or_default()
+}
+
 /// The sew line of a part, the lines that it was made of, and the class of its material: the largest closed
-/// line of a material; else its open lines joined, and closed along the fold.
+/// line of a material; else its open lines joined, and closed along the fold. Lines without the class of a
+/// material come last.
 fn outline(
     own: &[(usize, &Line, &Element)],
     fold: Option<[Vec2; 2]>,
-) -> Option<(DrawnLine, Vec<usize>, &'static str)> {
-    for material in MATERIALS {
+) -> Option<(DrawnLine, Vec<usize>, Option<&'static str>)> {
+    for material in MATERIALS.into_iter().map(Some).chain([None]) {
         let of = |(.., element): &&(usize, &Line, &Element)| {
             let is_other = NO_OUTLINE.iter().any(|class| element.has(class));
-            element.has(material) && !is_other
+            material_of(element) == material && !is_other && element.marker.is_empty()
         };
         let candidates: Vec<_> = own.iter().filter(of).collect();
         let closed = candidates
@@ -211,6 +236,26 @@ fn outline(
         }
     }
     None
+}
+
+/// A line of the allowance closed, if it goes round the sew line and its ends lie at one corner.
+fn around(mut line: DrawnLine, sew: &[Vec2]) -> DrawnLine {
+    let [first, last] = ends(&line);
+    let reach = |end: Vec2| nearest(end, sew).map_or(0.0, |found| found.distance);
+    let gap = (last - first).norm();
+    if line.is_closed || line.len() < 3 || gap > MAX_GAP_WIDTHS * reach(first).min(reach(last)) {
+        return line;
+    }
+    line.is_closed = true;
+    line.spans.resize(line.len(), Span::Straight);
+    match Region::of(&line).holds(sew, GAP) {
+        true => line,
+        false => {
+            line.is_closed = false;
+            line.spans.truncate(line.len() - 1);
+            line
+        }
+    }
 }
 
 /// The cut line of a part: the sew line, with the lines of its allowance in the place of those stretches that

@@ -4,6 +4,7 @@
 //! - [`crate::svg::drawing`]: what is drawn, as lines in units of the file;
 //! - [`crate::svg::scan`], [`crate::svg::style`], [`crate::svg::shape`], [`crate::svg::scale`]: elements,
 //!   transformations, what is hidden, curves, and the size of a unit;
+//! - [`crate::svg::ampersands`]: signs `&` that begin no entity;
 //! - [`crate::svg::join`], [`crate::svg::region`]: open lines joined, and which line lies in which;
 //! - [`crate::svg::freesewing`], [`crate::svg::plain`], [`crate::svg::layers`]: pieces of FreeSewing, of any
 //!   other program, and of layers that this program wrote;
@@ -13,6 +14,7 @@
 //! - [`crate::svg::back`], [`crate::svg::likeness`]: panels that were edited in a file of this program;
 //! - [`crate::drawn`]: the document that is made of pieces.
 
+mod ampersands;
 mod back;
 mod drawing;
 mod freesewing;

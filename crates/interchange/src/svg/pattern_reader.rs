@@ -1,5 +1,6 @@
 //! Patterns from SVG.
 
+use super::ampersands::escaped;
 use super::back::written;
 use super::drawing::Drawing;
 use super::piece::SvgPiece;
@@ -30,13 +31,29 @@ pub(crate) fn read_svg(text: &str, options: &ReadOptions) -> Result<SvgReading, 
             "leave pictures and fonts out of the drawing",
         ));
     }
-    let xml = Xml::read(
-        text,
-        "save the drawing anew in the program that it comes from",
-    )?;
+    let remedy = "save the drawing anew in the program that it comes from";
+    let (mended, signs);
+    let xml = match Xml::read(text, remedy) {
+        Ok(xml) => {
+            signs = 0;
+            xml
+        }
+        Err(fault) => {
+            (mended, signs) = escaped(text);
+            // The fault is told as it stands in the file.
+            Xml::read(&mended, remedy).map_err(|_| fault)?
+        }
+    };
     let scale = Scale::of(xml.root(), text)?;
     let drawing = scan(&xml, &scale)?;
     let mut losses = left_out(&drawing);
+    if signs > 0 {
+        let why = "each was read as a letter";
+        losses.push(Loss {
+            count: signs,
+            ..Loss::at("", "signs & that begin no entity", why)
+        });
+    }
     if let Some(written) = written(&xml)? {
         return back::read(&drawing, (written, &scale), options, losses);
     }

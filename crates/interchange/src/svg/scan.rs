@@ -72,12 +72,11 @@ pub(super) fn scan(xml: &Xml<'_>, scale: &Scale) -> Result<Drawing, FormatError>
     Ok(scanner.drawing)
 }
 
-/// Whether FreeSewing drew a file.
+/// Whether FreeSewing drew a file: it states its version, or the class that its styles are for.
 pub(super) fn is_freesewing(root: Node<'_, '_>) -> bool {
     let classes = root.attribute("class").unwrap_or_default();
-    classes
-        .split_whitespace()
-        .any(|class| class == "freesewing")
+    let mut classes = classes.split_whitespace();
+    root.attribute("freesewing").is_some() || classes.any(|class| class == "freesewing")
 }
 
 /// Whether an element is one of SVG of a name.

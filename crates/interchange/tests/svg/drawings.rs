@@ -21,7 +21,7 @@ fn with_root(root: &str, inside: &str) -> String {
 }
 
 /// Area (m2) and length (m) of the outline of each panel, by name.
-fn shapes(pattern: &Pattern) -> Vec<(String, f64, f64)> {
+pub(crate) fn shapes(pattern: &Pattern) -> Vec<(String, f64, f64)> {
     let draft = drafted(pattern, None);
     let of = |piece: &toile_pattern::Piece| {
         let curves: Vec<Curve> = piece.outline.iter().map(|edge| edge.curve).collect();
@@ -32,13 +32,13 @@ fn shapes(pattern: &Pattern) -> Vec<(String, f64, f64)> {
     draft.pieces.iter().map(of).collect()
 }
 
-fn one(reading: &Reading) -> (String, f64, f64) {
+pub(crate) fn one(reading: &Reading) -> (String, f64, f64) {
     let shapes = shapes(&reading.pattern);
     assert_eq!(shapes.len(), 1, "{shapes:?}");
     shapes.into_iter().next().unwrap()
 }
 
-fn is_near(a: f64, b: f64, tolerance: f64) {
+pub(crate) fn is_near(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance, "{a} is not {b}");
 }
 

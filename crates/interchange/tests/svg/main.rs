@@ -5,6 +5,7 @@ mod back;
 mod damaged;
 mod drawings;
 mod freesewing;
+mod freesewing_parts;
 #[allow(dead_code)] // Other tests use more of it.
 #[path = "../knife/patterns.rs"]
 mod patterns;
