@@ -111,7 +111,9 @@ fn fitted(points: &[Vec2], parameters: &[f64], tangents: [Vec2; 2]) -> Cubic {
     }
     let determinant = c00 * c11 - c01 * c01;
     let third = (last - first).norm() / 3.0;
-    let sound = |length: &f64| length.is_finite() && *length > 0.05 * third;
+    let whole: f64 = points.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
+    // Handles longer than the way itself would lead the curve there and back between its points.
+    let sound = |length: &f64| *length > 0.05 * third && *length < whole;
     let length = |x: f64| Some(x / determinant).filter(sound).unwrap_or(third);
     let (one, two) = (length(x0 * c11 - x1 * c01), length(c00 * x1 - c01 * x0));
     [
@@ -171,6 +173,17 @@ mod tests {
             assert_eq!(pair[0][3], pair[1][0]);
             let (a, b) = (pair[0][3] - pair[0][2], pair[1][1] - pair[1][0]);
             assert!(a.perp(&b).abs() < 1e-9 * a.norm().max(b.norm()));
+        }
+        // One point between ends says little of the curve: its handles are no longer than the way.
+        for turn in [-0.1, 0.1] {
+            let way = Vec2::new(0.014, -0.0027);
+            let off = Vec2::new(0.0002, 0.001);
+            let few = [Vec2::zeros(), 0.6 * way + off, way];
+            let tangents = [way.normalize(), -(way + turn * off).normalize()];
+            let cubic = fitted(&few, &[0.0, 0.6, 1.0], tangents);
+            let handles = [cubic[1] - cubic[0], cubic[3] - cubic[2]];
+            let whole = (few[1] - few[0]).norm() + (few[2] - few[1]).norm();
+            assert!(handles.iter().all(|handle| handle.norm() < whole), "{turn}");
         }
         let line: Vec<Vec2> = (0..9).map(|k| Vec2::new(f64::from(k), 2.0)).collect();
         assert_eq!(fit(&line, 1e-4).len(), 1);

@@ -106,8 +106,10 @@ fn dressed(first: Settled, options: &Options) -> Result<Settled, FlattenError> {
                 let mut before = settled.before.clone();
                 before.push([energy, settled.strain]);
                 let next = self::settled(next, before, options)?;
-                // Darts that came to lie over each other could not be sewn.
-                if next.state.darts_are_clear(LEGS_APART[1]) {
+                // Darts that came to lie over each other could not be sewn, and sides that came to overlap are no dart.
+                let mut found = next.state.darts.iter().skip(options.cuts.len());
+                let is_dart = !found.any(|dart| dart.overlaps(&next.state.places));
+                if is_dart && next.state.is_clear(LEGS_APART[1]) {
                     longer.push(next);
                 }
             }

@@ -1,5 +1,6 @@
 //! A region of a surface to its panel: meshed anew, flattened, and its darts cut straight.
 
+use crate::search::{LEGS_APART, darts_are_clear};
 use crate::{FlattenError, Flattened, MAX_EDGE, Options, SurfaceRegion, flatten};
 
 /// Largest energy of darts cut straight over that of darts along edges, for the straight ones to be kept (1).
@@ -85,5 +86,9 @@ fn straightened(
         darts: 0,
         ..options.clone()
     };
-    flatten_drawn(&cut, edge, &options).ok()
+    let flat = flatten_drawn(&cut, edge, &options).ok()?;
+    let panel = (&flat.region, &*flat.places);
+    let mut found_darts = flat.darts.iter().skip(drawn);
+    let is_dart = !found_darts.any(|dart| dart.overlaps(&flat.places));
+    (is_dart && darts_are_clear(panel, &flat.darts, LEGS_APART[1])).then_some(flat)
 }

@@ -3,7 +3,7 @@
 
 use crate::dart::{Opened, open, shortest_ways, way_to};
 use crate::{Dart, FlattenError, Grain, Options, Region, RestEnergy, minimise};
-use toile_geometry::{Vec2, Vec3, closest_on_segment, segment_distance, segments_cross};
+use toile_geometry::{Polygon, Vec2, Vec3, closest_on_segment, segment_distance, segments_cross};
 
 /// Places of the outline that are tried.
 const MOUTHS: usize = 20;
@@ -45,40 +45,9 @@ pub struct State {
 }
 
 impl State {
-    /// Whether the darts, their legs straight, keep clear of each other and of the outline by a share of its length.
-    pub fn darts_are_clear(&self, share: f64) -> bool {
-        let mut in_dart = vec![false; self.places.len()];
-        for dart in &self.darts {
-            for &v in dart.left.iter().chain(&dart.right) {
-                in_dart[v as usize] = true;
-            }
-        }
-        let outline = self.region.outline();
-        let next = outline.iter().cycle().skip(1);
-        // Edges that end at a mouth touch its legs.
-        let edges = outline.iter().zip(next).filter_map(|(&a, &b)| {
-            let is_free = !in_dart[a as usize] && !in_dart[b as usize];
-            is_free.then(|| [a, b].map(|v| self.places[v as usize]))
-        });
-        let edges: Vec<[Vec2; 2]> = edges.collect();
-        let length: f64 = edges.iter().map(|[a, b]| (b - a).norm()).sum();
-        let near = share * length;
-        let legs = self
-            .darts
-            .iter()
-            .map(|dart| dart.straight_legs(&self.places));
-        let legs: Vec<Vec<[Vec2; 2]>> = legs.collect();
-        let is_apart = |own: &[[Vec2; 2]], other: &[[Vec2; 2]]| {
-            let mut pairs = own.iter().flat_map(|a| other.iter().map(move |b| (*a, *b)));
-            pairs.all(|(a, b)| segment_distance(a, b) > near)
-        };
-        let is_inside = |[mouth, apex]: [Vec2; 2]| {
-            let on = (apex - mouth).try_normalize(0.0).unwrap_or_default();
-            let leg = [mouth, apex + on * near];
-            edges.iter().all(|&edge| !segments_cross(leg, edge))
-        };
-        legs.iter().flatten().all(|&leg| is_inside(leg))
-            && (1..legs.len()).all(|k| legs[..k].iter().all(|other| is_apart(&legs[k], other)))
+    /// Whether the darts keep clear, as [`darts_are_clear`] says.
+    pub fn is_clear(&self, share: f64) -> bool {
+        darts_are_clear((&self.region, &self.places), &self.darts, share)
     }
 
     /// The state with one more dart; the flat shape is the same, closed.
@@ -102,6 +71,51 @@ impl State {
             darts,
         })
     }
+}
+
+/// Whether the darts, their legs straight, keep clear of each other and of the outline by a share of its length, and the
+/// outline with their mouths is simple.
+pub fn darts_are_clear((region, places): (&Region, &[Vec2]), darts: &[Dart], share: f64) -> bool {
+    let mut in_dart = vec![false; places.len()];
+    for dart in darts {
+        for &v in dart.left.iter().chain(&dart.right) {
+            in_dart[v as usize] = true;
+        }
+    }
+    let outline = region.outline();
+    let next = outline.iter().cycle().skip(1);
+    // Edges that end at a mouth touch its legs.
+    let edges = outline.iter().zip(next).filter_map(|(&a, &b)| {
+        let is_free = !in_dart[a as usize] && !in_dart[b as usize];
+        is_free.then(|| [a, b].map(|v| places[v as usize]))
+    });
+    let edges: Vec<[Vec2; 2]> = edges.collect();
+    let length: f64 = edges.iter().map(|[a, b]| (b - a).norm()).sum();
+    let near = share * length;
+    // The outline with the mouths as its edges, as the panel has it.
+    let mut is_leg = vec![false; places.len()];
+    for dart in darts {
+        let legs = dart.left.iter().skip(1).chain(dart.right.iter().skip(1));
+        legs.for_each(|&v| is_leg[v as usize] = true);
+    }
+    let ring = outline.iter().filter(|&&v| !is_leg[v as usize]);
+    let ring = Polygon::new(ring.map(|&v| places[v as usize]).collect());
+    if !ring.is_simple() {
+        return false;
+    }
+    let legs = darts.iter().map(|dart| dart.straight_legs(places));
+    let legs: Vec<Vec<[Vec2; 2]>> = legs.collect();
+    let is_apart = |own: &[[Vec2; 2]], other: &[[Vec2; 2]]| {
+        let mut pairs = own.iter().flat_map(|a| other.iter().map(move |b| (*a, *b)));
+        pairs.all(|(a, b)| segment_distance(a, b) > near)
+    };
+    let is_inside = |[mouth, apex]: [Vec2; 2]| {
+        let on = (apex - mouth).try_normalize(0.0).unwrap_or_default();
+        let leg = [mouth, apex + on * near];
+        edges.iter().all(|&edge| !segments_cross(leg, edge))
+    };
+    legs.iter().flatten().all(|&leg| is_inside(leg))
+        && (1..legs.len()).all(|k| legs[..k].iter().all(|other| is_apart(&legs[k], other)))
 }
 
 /// A dart that was tried.
@@ -136,7 +150,7 @@ pub fn next_darts(
         let found = minimise(&law, &grain, &mut trial.places, SHORT_STEPS)?;
         // Sides that overlap ask for a gusset: that is no dart.
         let is_gusset = (trial.darts.last()).is_some_and(|dart| dart.overlaps(&trial.places));
-        if is_gusset || !trial.darts_are_clear(LEGS_APART[0]) {
+        if is_gusset || !trial.is_clear(LEGS_APART[0]) {
             return Ok(None);
         }
         Ok::<_, FlattenError>(Some(Trial {
