@@ -5,6 +5,7 @@ use crate::measurements_foreign::{put, refuse_empty};
 use crate::measurements_formulas::{Written, values_of};
 use crate::xml::Xml;
 use roxmltree::Node;
+use std::collections::BTreeSet;
 use toile_measure::{Measurements, SEAMLY, translated};
 
 /// Difference in size for which the table gives a measurement's `size_increase` (m).
@@ -87,6 +88,10 @@ pub(crate) struct SeamlyRows {
     pub metres: f64,
     /// Names and numbers in the file's units, also those that are zero.
     pub rows: Vec<(String, f64)>,
+    /// Names of the rows of a table for several sizes that no body can have.
+    pub impossible: BTreeSet<String>,
+    /// Why, for each of them, in words.
+    pub notes: Vec<String>,
 }
 
 /// Base size and base height that a table for several sizes declares (m). `None`: the table is of one body,
@@ -115,10 +120,26 @@ pub(crate) fn seamly_rows(text: &str, choice: SizeChoice) -> Result<SeamlyRows, 
         None => [0.0; 2],
         Some(sizes) => sizes.choose(choice, &mut Vec::new())?,
     };
-    let rows = rows_of(&xml, steps)?;
+    let mut rows = rows_of(&xml, steps)?;
+    let named = rows.iter().map(|row| (row.name.clone(), row.number));
+    let named: Vec<(String, f64)> = named.collect();
+    let mut notes = Vec::new();
+    if sizes.is_some() {
+        rows.retain(|row| row.number != 0.0);
+        leave_out(&mut rows, metres, &mut notes);
+    } else {
+        rows.clear();
+    }
+    let possible: BTreeSet<&str> = rows.iter().map(|row| row.name.as_str()).collect();
+    let impossible = named.iter().filter(|(name, number)| {
+        sizes.is_some() && *number != 0.0 && !possible.contains(name.as_str())
+    });
+    let impossible = impossible.map(|(name, _)| name.clone()).collect();
     Ok(SeamlyRows {
         metres,
-        rows: rows.into_iter().map(|row| (row.name, row.number)).collect(),
+        rows: named,
+        impossible,
+        notes,
     })
 }
 

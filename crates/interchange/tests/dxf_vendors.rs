@@ -417,7 +417,10 @@ fn valentina_has_no_text_and_notches_as_lines_across_the_allowance() {
                 &[],
             ));
         }
+        // The bare name of the piece, and blocks that drawings have.
+        parts.push(words("Front"));
         let mut file = File::default();
+        file.block("$MODEL_SPACE", &[]);
         file.block("FRONT", &parts);
         file.insert("FRONT", &[]);
         let truth = |piece: &str, x: f64| Truth {

@@ -68,7 +68,9 @@ fn files_of_earlier_versions_draft_as_recorded() {
         let now: String = lines.map(|line| format!("{line}\n")).collect();
         files += 1;
         if name.starts_with("unsound") {
-            let (now, recorded) = (findings(&now), findings(recorded));
+            // A line that leaves its panel stops it no longer: the cloth has what lies inside.
+            let recorded = recorded.replace("error LineOutside", "note LineOutside");
+            let (now, recorded) = (findings(&now), findings(&recorded));
             // What only follows from another fault of the panel is not told again today.
             let follows = |line: &str| {
                 // So does a seam of it wait, and tells nothing.

@@ -135,8 +135,8 @@ impl Pieces {
     fn left_out(&mut self, drawing: &DxfDrawing, empty: &[&Block]) {
         let is_drawn = |entity: &&Entity| !matches!(entity.drawn, Drawn::Text { .. });
         let loose = drawing.loose.iter().filter(is_drawn).count();
-        // Blocks with a star belong to drawing programs.
-        let drawn = |block: &&&Block| !block.name.starts_with('*');
+        // Blocks with these signs belong to drawing programs.
+        let drawn = |block: &&&Block| !block.name.starts_with(['*', '$']);
         let empty = empty.iter().filter(drawn).count();
         let all = [
             (

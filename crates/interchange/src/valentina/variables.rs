@@ -6,12 +6,11 @@ use super::kinds::{LENGTH, PLAIN, Quantity, Symbol};
 use super::quantities::{constant, demand, quantity_of};
 use super::sizes::tables_of;
 use super::translate::{translated, value};
-use crate::FormatError;
-use crate::exchange::Companion;
-use crate::exchange::{Guess, ReadOption};
+use crate::exchange::{Companion, Guess, ReadOption};
 use crate::measurements_seamly::SeamlyRows;
 use crate::part_names::part_name;
 use crate::xml::Xml;
+use crate::{FormatError, Loss};
 use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -263,6 +262,16 @@ fn measurements(
         return Ok(());
     }
     let (mut table, given) = table_of(rows);
+    for note in &rows.notes {
+        let place = found.map_or("", |companion| companion.name.as_str());
+        let why = format!(
+            "{}; formulas have it",
+            note.trim_start_matches("left out: ")
+        );
+        build
+            .losses
+            .push(Loss::at(place, "a measurement of the wearer", why));
+    }
     let complete = table.completed(Figure::Either);
     let others: Vec<OtherSize<'_>> = tables
         .iter()
@@ -359,7 +368,8 @@ fn table_of(rows: &SeamlyRows) -> (Measurements, BTreeMap<&str, f64>) {
         given.entry(theirs.as_str()).or_insert(si);
         // Measurements that are not in the catalogue are lengths in a table.
         let is_length = quantity == LENGTH || is_angle(&own);
-        let is_kept = *number != 0.0 && !table.contains(&own) && is_length;
+        let is_possible = !rows.impossible.contains(theirs);
+        let is_kept = *number != 0.0 && !table.contains(&own) && is_length && is_possible;
         if is_kept {
             // A name with other letters than a table may have becomes a variable.
             let _ = table.set(&own, si, Origin::Asked);

@@ -85,3 +85,28 @@ fn a_table_of_one_body_is_one_size() {
     assert_eq!(names, ["anna"]);
     assert_eq!(reading.guesses, []);
 }
+
+#[test]
+fn what_no_body_has_stays_in_formulas_and_is_no_measurement_of_the_wearer() {
+    // The high hips lie below the hips.
+    let rows =
+        "<m name='waist_to_highhip_f' base='64'/><m name='waist_to_hip_f' base='37'/></body-m";
+    let table = Companion {
+        name: "GOST.vst".to_owned(),
+        bytes: TABLE.replace("</body-m", rows).into_bytes(),
+    };
+    let tool = "<point type='endLine' id='9' name='P' basePoint='1' angle='0' length='waist_to_hip_f+hip_circ'/>";
+    let before = "<measurements>GOST.vst</measurements>";
+    let reading = read_valentina(&file(before, &format!("{AXES}{tool}"), ""), &[table]).unwrap();
+    let told: Vec<String> = reading.losses.iter().map(ToString::to_string).collect();
+    assert!(
+        told.len() == 1 && told[0].contains("waist_to_hip_f of 3.7 cm"),
+        "{told:?}"
+    );
+    let size = &reading.pattern.sizes[0];
+    assert!(!size.measurements.contains("hips_line"));
+    let evaluation = Evaluation::new(&reading.pattern, &size.measurements);
+    let point = reading.pattern.sheets[0].point_named("P").unwrap().id;
+    let at = evaluation.point(point).unwrap() * 100.0;
+    assert!((at - Vec2::new(3.7 + 96.0, 0.0)).norm() < 1e-9, "{at}");
+}
