@@ -222,6 +222,10 @@ impl BlockPiece {
                 Drawn::Text { at, text } => piece.text(*at, text),
             }
         }
+        // A text that repeats the name of the block says nothing more.
+        let name = block.name.to_uppercase();
+        let repeats = |text: &String| text.to_uppercase() == name;
+        piece.labels.others.retain(|text| !repeats(text));
         for (layer, all) in lines {
             let found = joined(all, GAP).into_iter();
             let found = found.map(|line| BlockLine::new(line, &inner));

@@ -237,10 +237,6 @@ impl PieceMaker {
     /// Tells what of a block has no place in the document.
     fn left_out(&mut self, name: &str, own: &BlockPiece) {
         let no_place = "the document has no place for them";
-        // A text that repeats the name of the block says nothing more.
-        let block = own.block.to_uppercase();
-        let texts = own.labels.others.iter();
-        let texts = texts.filter(|text| text.to_uppercase() != block);
         let all = [
             (
                 own.rules.len(),
@@ -266,7 +262,7 @@ impl PieceMaker {
                 "lines and points on layers of no standard",
                 "their meaning is not known",
             ),
-            (texts.count(), "texts", no_place),
+            (own.labels.others.len(), "texts", no_place),
             (
                 usize::from(own.labels.is_quantity_nothing()),
                 "quantities of 0",
