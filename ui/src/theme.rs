@@ -2,6 +2,11 @@
 
 use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, Theme, vec2};
 
+/// Red, green and blue of a colour (sRGB, 0..=1), in steps of 1/255.
+pub fn bytes(colour: [f64; 3]) -> [u8; 3] {
+    colour.map(|share| (share * 255.0).round() as u8)
+}
+
 /// Colours of the window in one theme.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {

@@ -28,6 +28,8 @@ fn a_region_clicked_on_the_mannequin_is_a_panel_of_the_pattern() {
     let mut drafter = Drafter::opened("t-shirt");
     let before = drafter.pattern();
     drafter.chord(Modifiers::SHIFT, Key::F6);
+    // The loop begins once the mannequin is there.
+    drafter.wait(|drafter| drafter.window.state().stage().laid.is_some());
     drafter.key(Key::Num1);
     for point in [[0.0, 1.05, 0.1], [0.09, 1.06, 0.1], [0.09, 1.14, 0.1]] {
         click_body(&mut drafter, point);
@@ -89,4 +91,28 @@ fn a_region_clicked_on_the_mannequin_is_a_panel_of_the_pattern() {
         (undone.panels, undone.sheets),
         (before.panels, before.sheets)
     );
+}
+
+#[test]
+fn a_panel_that_is_made_meanwhile_is_no_part_of_another_pattern() {
+    let mut drafter = Drafter::opened("t-shirt");
+    drafter.chord(Modifiers::SHIFT, Key::F6);
+    drafter.wait(|drafter| drafter.window.state().stage().laid.is_some());
+    drafter.key(Key::Num1);
+    for point in [[0.0, 1.05, 0.1], [0.09, 1.06, 0.1], [0.09, 1.14, 0.1]] {
+        click_body(&mut drafter, point);
+    }
+    drafter.press("Make the panel");
+    // Places stay while it is made.
+    click_body(&mut drafter, [0.0, 1.14, 0.1]);
+    assert_eq!(laid(&drafter), 3);
+    let other = concat!(env!("CARGO_MANIFEST_DIR"), "/../patterns/poncho.toile.json");
+    drafter.window.state_mut().open(std::path::Path::new(other));
+    let pattern = drafter.pattern();
+    assert_eq!(laid(&drafter), 0);
+    for _ in 0..300 {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        drafter.window.run_steps(1);
+    }
+    assert_eq!(drafter.pattern(), pattern);
 }

@@ -95,6 +95,9 @@ pub enum FlattenError {
         "no flat start without flipped triangles was found, the mesh has triangles that are too thin; mesh the surface again"
     )]
     NoStart,
+    /// The work was stopped.
+    #[error("it was stopped")]
+    Stopped,
     /// A region cannot be cut out of a surface, or meshed.
     #[error(transparent)]
     Loop(#[from] crate::LoopError),

@@ -2,7 +2,7 @@
 
 use crate::conformal::{conformal, flipped};
 use crate::dart::open;
-use crate::search::{LEGS_APART, State, next_darts};
+use crate::search::{APART_AT_REST, State, next_darts};
 use crate::tutte::tutte;
 use crate::{
     Dart, FlattenError, Grain, MAX_STEPS, Minimum, Options, Region, RestEnergy, SHARE_WITHIN,
@@ -89,10 +89,19 @@ struct Settled {
 /// Adds darts until the stretch is within its limit, or no dart helps. One dart after another is chosen, and of the first
 /// ones several are followed up, as the best one alone need not be the best of two.
 fn dressed(first: Settled, options: &Options) -> Result<Settled, FlattenError> {
-    let mut open = vec![first];
+    let drawn = options.cuts.len();
+    let rank = |shape: &Settled| (shape.strain > options.strain, shape.minimum.energy);
+    let better = |a: Settled, b: Settled| {
+        let (ranked, other) = (rank(&a), rank(&b));
+        let order = ranked.0.cmp(&other.0).then(ranked.1.total_cmp(&other.1));
+        if order.is_le() { a } else { b }
+    };
+    // Those that no further dart helps are ended; the best of them and of the last ones counts.
+    let mut followed = vec![first];
+    let mut ended = Vec::new();
     for number in 0..options.darts {
-        let within = open.iter().any(|settled| settled.strain <= options.strain);
-        if within {
+        let within = |shape: &Settled| shape.strain <= options.strain;
+        if followed.is_empty() || followed.iter().any(within) {
             break;
         }
         let most = match number {
@@ -100,30 +109,24 @@ fn dressed(first: Settled, options: &Options) -> Result<Settled, FlattenError> {
             _ => 1,
         };
         let mut longer = Vec::new();
-        for settled in &open {
-            let energy = settled.minimum.energy;
-            for next in next_darts(&settled.state, options, energy, most)? {
-                let mut before = settled.before.clone();
-                before.push([energy, settled.strain]);
-                let next = self::settled(next, before, options)?;
-                // Darts that came to lie over each other could not be sewn, and sides that came to overlap are no dart.
-                let mut found = next.state.darts.iter().skip(options.cuts.len());
-                let is_dart = !found.any(|dart| dart.overlaps(&next.state.places));
-                if is_dart && next.state.is_clear(LEGS_APART[1]) {
+        for shape in followed {
+            let energy = shape.minimum.energy;
+            let count = longer.len();
+            for next in next_darts(&shape.state, options, energy, most)? {
+                let mut before = shape.before.clone();
+                before.push([energy, shape.strain]);
+                let next = settled(next, before, options)?;
+                if next.state.can_be_sewn(drawn, APART_AT_REST) {
                     longer.push(next);
                 }
             }
+            if longer.len() == count {
+                ended.push(shape);
+            }
         }
-        if longer.is_empty() {
-            break;
-        }
-        open = longer;
+        followed = longer;
     }
-    let rank = |settled: &Settled| (settled.strain > options.strain, settled.minimum.energy);
-    let best = open.into_iter().min_by(|a, b| {
-        let (a, b) = (rank(a), rank(b));
-        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
-    });
+    let best = followed.into_iter().chain(ended).reduce(better);
     best.ok_or(FlattenError::NoStart)
 }
 

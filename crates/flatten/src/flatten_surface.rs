@@ -1,6 +1,6 @@
 //! A region of a surface to its panel: meshed anew, flattened, and its darts cut straight.
 
-use crate::search::{LEGS_APART, darts_are_clear};
+use crate::search::{APART_AT_REST, can_be_sewn};
 use crate::{FlattenError, Flattened, MAX_EDGE, Options, SurfaceRegion, flatten};
 
 /// Largest energy of darts cut straight over that of darts along edges, for the straight ones to be kept (1).
@@ -20,36 +20,36 @@ pub fn flatten_surface(
     options: &Options,
 ) -> Result<Flattened, FlattenError> {
     let drawn = region.cuts().len();
-    if options.darts == 0 {
-        return flatten_drawn(region, edge, options);
-    }
-    // Where darts lie is found on large triangles.
-    let coarse = flatten_drawn(region, (COARSE * edge).min(MAX_EDGE), options)?;
-    let has_darts = coarse.darts.len() > drawn;
-    let straight = (has_darts || coarse.strain <= options.strain)
-        .then(|| straightened(region, edge, options, &coarse))
-        .flatten();
-    if let Some(straight) =
-        straight.filter(|s| s.minimum.energy <= MAX_COST * coarse.minimum.energy)
-    {
-        return Ok(Flattened {
-            before: coarse.before,
-            ..straight
-        });
+    // Where darts lie is found on large triangles, if a region has enough of them.
+    let coarse = match options.darts {
+        0 => None,
+        _ => flatten_drawn(region, (COARSE * edge).min(MAX_EDGE), options).ok(),
+    };
+    options.go_on()?;
+    let coarse = coarse.filter(|found| found.darts.len() > drawn);
+    if let Some(flat) = coarse.and_then(|found| drawn_straight(region, edge, options, &found)) {
+        return Ok(flat);
     }
     let found = flatten_drawn(region, edge, options)?;
     if found.darts.len() == drawn {
         return Ok(found);
     }
-    match straightened(region, edge, options, &found) {
-        Some(straight) if straight.minimum.energy <= MAX_COST * found.minimum.energy => {
-            Ok(Flattened {
-                before: found.before,
-                ..straight
-            })
-        }
-        Some(_) | None => Ok(found),
-    }
+    Ok(drawn_straight(region, edge, options, &found).unwrap_or(found))
+}
+
+/// The panel with the darts that were found drawn straight, if that costs little and loses no limit that was kept.
+fn drawn_straight(
+    region: &SurfaceRegion,
+    edge: f64,
+    options: &Options,
+    found: &Flattened,
+) -> Option<Flattened> {
+    let straight = straightened(region, edge, options, found)?;
+    let keeps = straight.strain <= options.strain || found.strain > options.strain;
+    (keeps && straight.minimum.energy <= MAX_COST * found.minimum.energy).then(|| Flattened {
+        before: found.before.clone(),
+        ..straight
+    })
 }
 
 fn flatten_drawn(
@@ -88,7 +88,5 @@ fn straightened(
     };
     let flat = flatten_drawn(&cut, edge, &options).ok()?;
     let panel = (&flat.region, &*flat.places);
-    let mut found_darts = flat.darts.iter().skip(drawn);
-    let is_dart = !found_darts.any(|dart| dart.overlaps(&flat.places));
-    (is_dart && darts_are_clear(panel, &flat.darts, LEGS_APART[1])).then_some(flat)
+    can_be_sewn(panel, &flat.darts, drawn, APART_AT_REST).then_some(flat)
 }

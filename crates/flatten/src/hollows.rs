@@ -25,6 +25,9 @@ const OVER: f64 = 1.85;
 /// Distance from the plane x = 0 within which an edge of a region is taken for the middle of a symmetrical surface (m).
 const ON_PLANE: f64 = 2e-4;
 
+/// Length added to the distance within which the surface is looked for, against rounding (m).
+const NEAR: f64 = 1e-6;
+
 /// How a vertex of the film moves.
 enum Moves {
     /// Not at all.
@@ -48,11 +51,22 @@ struct Obstacle {
     ease: f64,
 }
 
+/// A region of cloth that spans the hollows of a surface.
+#[derive(Clone, Debug)]
+pub struct Spanning {
+    /// The region.
+    pub region: SurfaceRegion,
+    /// The farthest that the cloth is from the surface, beyond the ease (m).
+    pub farthest: f64,
+    /// Whether the film came to rest.
+    pub at_rest: bool,
+}
+
 impl Obstacle {
     /// How far a place is beyond the ease (m), and the place at the ease; `None` beside the outline, where nothing is under the
-    /// place.
-    fn room(&self, place: Vec3) -> Option<(f64, Vec3)> {
-        let found = self.tree.closest_point(place, f64::INFINITY)?;
+    /// place. The surface is at most `reach` away (m).
+    fn room(&self, place: Vec3, reach: f64) -> Option<(f64, Vec3)> {
+        let found = self.tree.closest_point(place, reach)?;
         let corners = self.tree.mesh().triangles[found.triangle as usize];
         let mut on = corners
             .iter()
@@ -66,8 +80,7 @@ impl Obstacle {
 
 impl SurfaceRegion {
     /// The region of cloth at an ease (m) from this region of a surface, straight over its hollows; meshed with about a length
-    /// of edges (m). Where the surface is its own mirror image, an edge in the plane x = 0 is the middle of the cloth. Also
-    /// the farthest that the cloth is from the surface, beyond the ease (m).
+    /// of edges (m). Where the surface is its own mirror image, an edge in the plane x = 0 is the middle of the cloth.
     ///
     /// # Errors
     /// The length cannot be used.
@@ -76,7 +89,7 @@ impl SurfaceRegion {
         ease: f64,
         edge: f64,
         is_symmetrical: bool,
-    ) -> Result<(Self, f64), LoopError> {
+    ) -> Result<Spanning, LoopError> {
         let tree = SurfaceTree::new(self.surface());
         let mut is_rim = vec![false; tree.mesh().positions.len()];
         self.ring.iter().for_each(|&v| is_rim[v as usize] = true);
@@ -89,7 +102,11 @@ impl SurfaceRegion {
         let corners: HashSet<u32> = moved.corners.iter().map(number).collect();
         let fixed: HashSet<u32> = moved.fixed.iter().map(number).collect();
         let Some(ring) = outlines(&mesh).into_iter().next() else {
-            return Ok((moved, 0.0));
+            return Ok(Spanning {
+                region: moved,
+                farthest: 0.0,
+                at_rest: true,
+            });
         };
         // Normals of the whole surface, whose rim this is not.
         let normal = |v: u32| {
@@ -99,11 +116,14 @@ impl SurfaceRegion {
             moved.mesh.normals()[near as usize]
         };
         let moves = moves(&mesh, (&ring, &corners), normal, is_symmetrical);
-        relax(&mut mesh.positions, &moves, &obstacle, edge);
-        let off = |place: &Vec3| obstacle.room(*place).map_or(0.0, |(room, _)| room);
+        let at_rest = relax(&mut mesh.positions, &moves, &obstacle, edge);
+        let off = |place: &Vec3| {
+            let room = obstacle.room(*place, f64::INFINITY);
+            room.map_or(0.0, |(room, _)| room)
+        };
         let farthest = mesh.positions.iter().map(off).fold(0.0, f64::max);
         let normals = mesh.vertex_normals();
-        let spanning = Self {
+        let region = Self {
             mesh: SplitMesh::with_normals(&mesh, normals)?,
             ring,
             corners,
@@ -111,7 +131,11 @@ impl SurfaceRegion {
             fixed,
             farthest: self.farthest,
         };
-        Ok((spanning, farthest))
+        Ok(Spanning {
+            region,
+            farthest,
+            at_rest,
+        })
     }
 }
 
@@ -161,10 +185,13 @@ fn moves(
     moves
 }
 
-fn relax(positions: &mut [Vec3], moves: &[Moves], obstacle: &Obstacle, edge: f64) {
+/// Moves the vertices until none moves any more; whether they came to rest.
+fn relax(positions: &mut [Vec3], moves: &[Moves], obstacle: &Obstacle, edge: f64) -> bool {
     let start = positions.to_vec();
-    // Distances change by no more than the way of a vertex, so one that is far from the surface need not be measured.
+    // Distances change by no more than the way of a vertex: one that is far from the surface need not be measured, and the
+    // surface is no farther away than when it was measured last and the way since.
     let mut room = vec![0.0_f64; positions.len()];
+    let mut reach = vec![f64::INFINITY; positions.len()];
     let way = |positions: &[Vec3], v: usize, of: &[u32]| {
         let sum: Vec3 = of.iter().map(|&w| positions[w as usize]).sum();
         (sum / of.len().max(1) as f64 - positions[v]) * OVER
@@ -173,7 +200,7 @@ fn relax(positions: &mut [Vec3], moves: &[Moves], obstacle: &Obstacle, edge: f64
         let mut most = 0.0_f64;
         for (v, moves) in moves.iter().enumerate() {
             let before = positions[v];
-            let mut place = match moves {
+            let place = match moves {
                 Moves::Fixed => continue,
                 Moves::Corner(of, normal) => {
                     let out = normal.dot(&(before - start[v] + way(positions, v, of)));
@@ -185,32 +212,38 @@ fn relax(positions: &mut [Vec3], moves: &[Moves], obstacle: &Obstacle, edge: f64
                     let out = out + OVER * along(before, *normal, ends);
                     start[v] + normal * out.max(0.0)
                 }
-                Moves::Free(of) | Moves::InPlane(of) => before + way(positions, v, of),
-            };
-            match moves {
-                Moves::Fixed | Moves::Line(..) | Moves::Corner(..) => {}
-                Moves::Free(_) | Moves::InPlane(_) => {
-                    room[v] -= (place - before).norm();
+                Moves::Free(of) | Moves::InPlane(of) => {
+                    let mut place = before + way(positions, v, of);
+                    let is_in_plane = matches!(moves, Moves::InPlane(_));
+                    if is_in_plane {
+                        place.x = before.x;
+                    }
+                    let moved = (place - before).norm();
+                    room[v] -= moved;
+                    reach[v] += moved + NEAR;
                     if room[v] <= 0.0
-                        && let Some((beyond, at_ease)) = obstacle.room(place)
+                        && let Some((beyond, at_ease)) = obstacle.room(place, reach[v])
                     {
                         if beyond < 0.0 {
                             place = at_ease;
+                            if is_in_plane {
+                                place.x = before.x;
+                            }
                         }
                         room[v] = beyond.max(0.0);
+                        reach[v] = beyond.max(0.0) + obstacle.ease.abs() + NEAR;
                     }
+                    place
                 }
-            }
-            if matches!(moves, Moves::InPlane(_)) {
-                place.x = before.x;
-            }
+            };
             most = most.max((place - before).norm());
             positions[v] = place;
         }
         if most < REST * edge {
-            break;
+            return true;
         }
     }
+    false
 }
 
 /// The way along a direction from a place to where it is nearest to the line through two others.

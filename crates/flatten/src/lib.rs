@@ -40,6 +40,7 @@ pub use flatten::{Flattened, flatten, flatten_region};
 pub use flatten_surface::flatten_surface;
 pub use geodesic::{PathNode, shortest_path};
 pub use grain::Grain;
+pub use hollows::Spanning;
 pub use loop_error::LoopError;
 pub use options::{Options, SHARE_WITHIN};
 pub use outline::{OutlineDart, OutlineEdge, PanelOutline, panel_outline};

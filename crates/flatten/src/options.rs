@@ -1,5 +1,8 @@
 //! What is asked of a panel that is to be flattened.
 
+use crate::FlattenError;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use toile_drape::laws::stretch::MembraneLaw;
 use toile_geometry::Vec3;
 
@@ -19,4 +22,20 @@ pub struct Options {
     pub darts: usize,
     /// Cuts to be made first: vertices of the mesh along edges, from the outline to the apex.
     pub cuts: Vec<Vec<u32>>,
+    /// Set to stop the work; asked before every dart that is tried.
+    pub stop: Option<Arc<AtomicBool>>,
+}
+
+impl Options {
+    /// Ends the work if it is to stop.
+    ///
+    /// # Errors
+    /// It is to stop.
+    pub(crate) fn go_on(&self) -> Result<(), FlattenError> {
+        let is_stopped = self.stop.as_ref().map(|stop| stop.load(Ordering::Relaxed));
+        match is_stopped {
+            Some(true) => Err(FlattenError::Stopped),
+            Some(false) | None => Ok(()),
+        }
+    }
 }

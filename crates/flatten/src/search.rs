@@ -34,8 +34,11 @@ const MIN_GAIN: f64 = 0.02;
 const MAX_BOW: f64 = 0.12;
 
 /// Least distance of the straight legs of darts from those of others and of an apex from the outline, as a share of the
-/// outline's length (1): when a dart is chosen, and once the shape is at rest.
-pub const LEGS_APART: [f64; 2] = [0.008, 0.004];
+/// outline's length, when a dart is chosen (1).
+const APART_CHOSEN: f64 = 0.008;
+
+/// The same once the shape is at rest (1).
+pub const APART_AT_REST: f64 = 0.004;
 
 /// A surface with its flat shape and darts.
 pub struct State {
@@ -45,9 +48,9 @@ pub struct State {
 }
 
 impl State {
-    /// Whether the darts keep clear, as [`darts_are_clear`] says.
-    pub fn is_clear(&self, share: f64) -> bool {
-        darts_are_clear((&self.region, &self.places), &self.darts, share)
+    /// Whether the darts after `drawn` others can be sewn, as [`can_be_sewn`] says.
+    pub fn can_be_sewn(&self, drawn: usize, share: f64) -> bool {
+        can_be_sewn((&self.region, &self.places), &self.darts, drawn, share)
     }
 
     /// The state with one more dart; the flat shape is the same, closed.
@@ -73,16 +76,34 @@ impl State {
     }
 }
 
-/// Whether the darts, their legs straight, keep clear of each other and of the outline by a share of its length, and the
-/// outline with their mouths is simple.
-pub fn darts_are_clear((region, places): (&Region, &[Vec2]), darts: &[Dart], share: f64) -> bool {
+/// Whether the darts that were found, all after `drawn` others, can be sewn with straight legs: their sides do not overlap, they
+/// keep clear of other darts and of the outline by a share of its length, and the outline with their mouths is simple.
+pub fn can_be_sewn(
+    (region, places): (&Region, &[Vec2]),
+    darts: &[Dart],
+    drawn: usize,
+    share: f64,
+) -> bool {
+    let found = &darts[drawn.min(darts.len())..];
+    if found.iter().any(|dart| dart.overlaps(places)) {
+        return false;
+    }
     let mut in_dart = vec![false; places.len()];
+    let mut is_leg = vec![false; places.len()];
     for dart in darts {
-        for &v in dart.left.iter().chain(&dart.right) {
-            in_dart[v as usize] = true;
+        for leg in [&dart.left, &dart.right] {
+            leg.iter().for_each(|&v| in_dart[v as usize] = true);
+            leg.iter().skip(1).for_each(|&v| is_leg[v as usize] = true);
         }
     }
     let outline = region.outline();
+    // The outline with the mouths as its edges, as the panel has it; sides of a drawn cut that overlap stay part of it.
+    if !darts[..drawn].iter().any(|dart| dart.overlaps(places)) {
+        let ring = outline.iter().filter(|&&v| !is_leg[v as usize]);
+        if !Polygon::new(ring.map(|&v| places[v as usize]).collect()).is_simple() {
+            return false;
+        }
+    }
     let next = outline.iter().cycle().skip(1);
     // Edges that end at a mouth touch its legs.
     let edges = outline.iter().zip(next).filter_map(|(&a, &b)| {
@@ -92,17 +113,6 @@ pub fn darts_are_clear((region, places): (&Region, &[Vec2]), darts: &[Dart], sha
     let edges: Vec<[Vec2; 2]> = edges.collect();
     let length: f64 = edges.iter().map(|[a, b]| (b - a).norm()).sum();
     let near = share * length;
-    // The outline with the mouths as its edges, as the panel has it.
-    let mut is_leg = vec![false; places.len()];
-    for dart in darts {
-        let legs = dart.left.iter().skip(1).chain(dart.right.iter().skip(1));
-        legs.for_each(|&v| is_leg[v as usize] = true);
-    }
-    let ring = outline.iter().filter(|&&v| !is_leg[v as usize]);
-    let ring = Polygon::new(ring.map(|&v| places[v as usize]).collect());
-    if !ring.is_simple() {
-        return false;
-    }
     let legs = darts.iter().map(|dart| dart.straight_legs(places));
     let legs: Vec<Vec<[Vec2; 2]>> = legs.collect();
     let is_apart = |own: &[[Vec2; 2]], other: &[[Vec2; 2]]| {
@@ -114,8 +124,10 @@ pub fn darts_are_clear((region, places): (&Region, &[Vec2]), darts: &[Dart], sha
         let leg = [mouth, apex + on * near];
         edges.iter().all(|&edge| !segments_cross(leg, edge))
     };
-    legs.iter().flatten().all(|&leg| is_inside(leg))
-        && (1..legs.len()).all(|k| legs[..k].iter().all(|other| is_apart(&legs[k], other)))
+    (drawn..legs.len()).all(|k| {
+        legs[k].iter().all(|&leg| is_inside(leg))
+            && legs[..k].iter().all(|other| is_apart(&legs[k], other))
+    })
 }
 
 /// A dart that was tried.
@@ -144,13 +156,12 @@ pub fn next_darts(
         barred[v as usize] = true;
     }
     let try_path = |path: &[u32], way: &[u32]| {
+        options.go_on()?;
         let mut trial = state.opened(path)?;
         let grain = Grain::new(&trial.region, options.grain)?;
         let law = RestEnergy::new(&trial.region, options.law);
         let found = minimise(&law, &grain, &mut trial.places, SHORT_STEPS)?;
-        // Sides that overlap ask for a gusset: that is no dart.
-        let is_gusset = (trial.darts.last()).is_some_and(|dart| dart.overlaps(&trial.places));
-        if is_gusset || !trial.is_clear(LEGS_APART[0]) {
+        if !trial.can_be_sewn(options.cuts.len(), APART_CHOSEN) {
             return Ok(None);
         }
         Ok::<_, FlattenError>(Some(Trial {
@@ -173,7 +184,7 @@ pub fn next_darts(
     }
     trials.sort_by(|a, b| a.energy.total_cmp(&b.energy));
     let mouth = |trial: &Trial| state.places[trial.way[0] as usize];
-    let apart = MOUTHS_APART * outline_length(state);
+    let apart = MOUTHS_APART * along_outline(state)[state.region.outline().len()];
     let mut chosen: Vec<Trial> = Vec::new();
     for trial in trials {
         let is_apart = |other: &Trial| (mouth(other) - mouth(&trial)).norm() > apart;
@@ -196,14 +207,15 @@ pub fn next_darts(
     Ok(chosen.into_iter().map(|trial| trial.state).collect())
 }
 
-/// Length of the outline on the panel (m).
-fn outline_length(state: &State) -> f64 {
+/// For each vertex of the outline, its way along that from the first one on the panel, and the whole length last (m).
+fn along_outline(state: &State) -> Vec<f64> {
     let outline = state.region.outline();
-    let next = outline.iter().cycle().skip(1);
-    let sides = outline.iter().zip(next);
-    sides
-        .map(|(&a, &b)| (state.places[b as usize] - state.places[a as usize]).norm())
-        .sum()
+    let place = |k: usize| state.places[outline[k % outline.len()] as usize];
+    let mut along = vec![0.0];
+    for k in 0..outline.len() {
+        along.push(along[k] + (place(k + 1) - place(k)).norm());
+    }
+    along
 }
 
 /// The vertex inside with the most energy about it, and the one deepest inside.
@@ -265,10 +277,7 @@ fn ways_inside(
 fn mouths(state: &State) -> Vec<u32> {
     let outline = state.region.outline();
     let place = |k: usize| state.places[outline[k % outline.len()] as usize];
-    let mut along = vec![0.0];
-    for k in 0..outline.len() {
-        along.push(along[k] + (place(k + 1) - place(k)).norm());
-    }
+    let along = along_outline(state);
     let whole = along[outline.len()];
     let in_dart = |v: u32| {
         let mut darts = state.darts.iter();

@@ -95,12 +95,11 @@ pub fn cut_out(mesh: &TriangleMesh, asked: &SurfaceLoop) -> Result<SurfaceRegion
 ///
 /// # Errors
 /// The surface branches, a place is not on it, both are the same, or no path joins them.
-pub fn surface_path(mesh: &TriangleMesh, ends: [Vec3; 2]) -> Result<Vec<Vec3>, LoopError> {
-    let mut split = SplitMesh::new(mesh)?;
-    let tree = SurfaceTree::new(mesh.clone());
+pub fn surface_path(surface: &SurfaceTree, ends: [Vec3; 2]) -> Result<Vec<Vec3>, LoopError> {
+    let mut split = SplitMesh::new(surface.mesh())?;
     let [name, other] = [place_name(0), place_name(1)];
-    let (from, _) = vertex_at(&mut split, &tree, ends[0], &name)?;
-    let (to, _) = vertex_at(&mut split, &tree, ends[1], &other)?;
+    let (from, _) = vertex_at(&mut split, surface, ends[0], &name)?;
+    let (to, _) = vertex_at(&mut split, surface, ends[1], &other)?;
     if from == to {
         return Err(LoopError::Same(name, other));
     }

@@ -6,10 +6,10 @@ mod common;
 use common::{grid, options};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use toile_flatten::{
-    LoopError, Options, PathNode, Region, SplitMesh, SurfaceLoop, SurfaceRegion, cut_out,
+    LoopError, Options, PathNode, Region, Spanning, SplitMesh, SurfaceLoop, SurfaceRegion, cut_out,
     flatten_surface, shortest_path, surface_path,
 };
-use toile_geometry::{TriangleMesh, Vec3};
+use toile_geometry::{SurfaceTree, TriangleMesh, Vec3};
 
 /// A closed sphere of 10 cm: a cube of grids pushed out, so many cells a side.
 fn ball(cells: u32) -> TriangleMesh {
@@ -128,7 +128,7 @@ fn paths_on_a_cylinder_and_a_ball_have_the_lengths_of_geodesics() {
 
 #[test]
 fn a_path_between_places_of_a_ball_is_a_great_circle() {
-    let ball = ball(16);
+    let ball = SurfaceTree::new(ball(16));
     let ends = [on_ball(10.0, 5.0), on_ball(70.0, 40.0)];
     let path = surface_path(&ball, ends).unwrap();
     let length: f64 = path.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
@@ -435,7 +435,11 @@ fn grooved(depth: f64) -> SurfaceRegion {
 #[test]
 fn cloth_spans_a_groove_and_lies_on_a_ridge() {
     let region = grooved(0.03);
-    let (spanning, deep) = region.spanning_hollows(0.0, 0.006, false).unwrap();
+    let Spanning {
+        region: spanning,
+        farthest: deep,
+        ..
+    } = region.spanning_hollows(0.0, 0.006, false).unwrap();
     assert!((deep - 0.03).abs() < 0.002, "{deep}");
     let flat = spanning.surface();
     // Straight from rim to rim: as large as the sheet between the corners.
@@ -449,7 +453,9 @@ fn cloth_spans_a_groove_and_lies_on_a_ridge() {
     );
     // Over a ridge the cloth lies on the top, and leaves it straight for the rim.
     let ridge = grooved(-0.03);
-    let (lying, _) = ridge.spanning_hollows(0.004, 0.006, false).unwrap();
+    let lying = ridge.spanning_hollows(0.004, 0.006, false).unwrap();
+    assert!(lying.at_rest);
+    let lying = lying.region;
     assert!(lying.surface().area() < ridge.moved_out(0.004).surface().area());
     let top = lying
         .surface()
@@ -478,8 +484,8 @@ fn an_edge_in_the_middle_plane_is_the_middle_of_symmetrical_cloth() {
     };
     let region = cut_out(&half, &asked).unwrap();
     let deepest = |is_symmetrical: bool| {
-        let (spanning, _) = region.spanning_hollows(0.0, 0.006, is_symmetrical).unwrap();
-        let surface = spanning.surface();
+        let spanning = region.spanning_hollows(0.0, 0.006, is_symmetrical).unwrap();
+        let surface = spanning.region.surface();
         let middle = surface
             .positions
             .iter()

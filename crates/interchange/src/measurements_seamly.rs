@@ -5,7 +5,6 @@ use crate::measurements_foreign::{put, refuse_empty};
 use crate::measurements_formulas::{Written, values_of};
 use crate::xml::Xml;
 use roxmltree::Node;
-use std::collections::BTreeSet;
 use toile_measure::{Measurements, SEAMLY, translated};
 
 /// Difference in size for which the table gives a measurement's `size_increase` (m).
@@ -67,7 +66,8 @@ pub fn read_seamly(
     let mut rows = rows_of(&xml, steps)?;
     rows.retain(|row| row.number != 0.0);
     if sizes.is_some() {
-        leave_out(&mut rows, scale, &mut notes);
+        let left_out = leave_out(&mut rows, scale).into_iter();
+        notes.extend(left_out.map(|rows| format!("left out: {}", rows.why)));
     }
     let mut table = Measurements::new();
     for row in rows {
@@ -88,10 +88,17 @@ pub(crate) struct SeamlyRows {
     pub metres: f64,
     /// Names and numbers in the file's units, also those that are zero.
     pub rows: Vec<(String, f64)>,
-    /// Names of the rows of a table for several sizes that no body can have.
-    pub impossible: BTreeSet<String>,
-    /// Why, for each of them, in words.
-    pub notes: Vec<String>,
+    /// Rows of a table for several sizes that no body can have.
+    pub impossible: Vec<ImpossibleRows>,
+}
+
+/// Rows of a table that no body can have together.
+#[derive(Clone, Debug)]
+pub(crate) struct ImpossibleRows {
+    /// Their names.
+    pub names: Vec<String>,
+    /// The rows, and why no body can have them, in words.
+    pub why: String,
 }
 
 /// Base size and base height that a table for several sizes declares (m). `None`: the table is of one body,
@@ -122,24 +129,16 @@ pub(crate) fn seamly_rows(text: &str, choice: SizeChoice) -> Result<SeamlyRows, 
     };
     let mut rows = rows_of(&xml, steps)?;
     let named = rows.iter().map(|row| (row.name.clone(), row.number));
-    let named: Vec<(String, f64)> = named.collect();
-    let mut notes = Vec::new();
+    let named = named.collect();
+    let mut impossible = Vec::new();
     if sizes.is_some() {
         rows.retain(|row| row.number != 0.0);
-        leave_out(&mut rows, metres, &mut notes);
-    } else {
-        rows.clear();
+        impossible = leave_out(&mut rows, metres);
     }
-    let possible: BTreeSet<&str> = rows.iter().map(|row| row.name.as_str()).collect();
-    let impossible = named.iter().filter(|(name, number)| {
-        sizes.is_some() && *number != 0.0 && !possible.contains(name.as_str())
-    });
-    let impossible = impossible.map(|(name, _)| name.clone()).collect();
     Ok(SeamlyRows {
         metres,
         rows: named,
         impossible,
-        notes,
     })
 }
 
@@ -376,8 +375,8 @@ const LESS: [(&str, f64, &str, &[&str], &str); 3] = [
     ),
 ];
 
-/// Removes values that no body can have, and adds a note for each.
-fn leave_out(rows: &mut Vec<Row>, scale: f64, notes: &mut Vec<String>) {
+/// Removes values that no body can have, and returns them.
+fn leave_out(rows: &mut Vec<Row>, scale: f64) -> Vec<ImpossibleRows> {
     let shown = |row: &Row| {
         format!(
             "line {}, {} of {} cm",
@@ -386,10 +385,14 @@ fn leave_out(rows: &mut Vec<Row>, scale: f64, notes: &mut Vec<String>) {
             in_cm(row.number * scale)
         )
     };
+    let mut found = Vec::new();
     rows.retain(|row| {
         let kept = row.number > 0.0;
         if !kept {
-            notes.push(format!("left out: {}: it is not above 0", shown(row)));
+            found.push(ImpossibleRows {
+                names: vec![row.name.clone()],
+                why: format!("{}: it is not above 0", shown(row)),
+            });
         }
         kept
     });
@@ -406,10 +409,15 @@ fn leave_out(rows: &mut Vec<Row>, scale: f64, notes: &mut Vec<String>) {
             continue;
         }
         let is_out = |row: &Row| out.contains(&row.name.as_str());
-        let gone: Vec<String> = rows.iter().filter(|row| is_out(row)).map(shown).collect();
-        notes.push(format!("left out: {}: {why}", gone.join("; ")));
+        let gone = || rows.iter().filter(|row| is_out(row));
+        let words: Vec<String> = gone().map(shown).collect();
+        found.push(ImpossibleRows {
+            names: gone().map(|row| row.name.clone()).collect(),
+            why: format!("{}: {why}", words.join("; ")),
+        });
         rows.retain(|row| !is_out(row));
     }
+    found
 }
 
 #[cfg(test)]

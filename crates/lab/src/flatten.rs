@@ -26,6 +26,7 @@ pub(crate) fn patches(result: &mut Timed) -> Result<(), LabError> {
         strain: 0.03,
         darts: 4,
         cuts: Vec::new(),
+        stop: None,
     };
     let mesh = patch(60.0, CELLS);
     result.vertices = mesh.positions.len();

@@ -260,9 +260,13 @@ struct PieceCheck<'a> {
 
 impl PieceCheck<'_> {
     fn error(&mut self, code: Code, place: Place, what: &str, hint: &str) {
+        self.tell(Severity::Error, (code, place), what, hint);
+    }
+
+    fn tell(&mut self, severity: Severity, (code, place): (Code, Place), what: &str, hint: &str) {
         let message = format!("panel {:?}: {what}", self.piece.name);
         self.diagnostics
-            .push(Diagnostic::error(code, place, message, hint));
+            .push(Diagnostic::new(severity, code, place, message, hint));
     }
 
     fn edge_place(&self, edge: &PieceEdge) -> Place {
@@ -481,20 +485,13 @@ impl PieceCheck<'_> {
                 .into_iter()
                 .find(|point| !segments.holds(*point, LINE_TOLERANCE));
             if let Some(point) = outside {
-                let message = format!(
-                    "panel {:?}: internal line {name} leaves the panel at x = {:.1} cm, y = {:.1} cm; it is drawn there, but no cloth has it",
-                    self.piece.name,
+                let words = format!(
+                    "internal line {name} leaves the panel at x = {:.1} cm, y = {:.1} cm; it is drawn there, but no cloth has it",
                     point.x * 100.0,
                     point.y * 100.0
                 );
                 let hint = "move its points inside the panel if the cloth should have all of it";
-                self.diagnostics.push(Diagnostic::new(
-                    Severity::Note,
-                    Code::LineOutside,
-                    place,
-                    message,
-                    hint,
-                ));
+                self.tell(Severity::Note, (Code::LineOutside, place), &words, hint);
                 return;
             }
         }

@@ -36,7 +36,8 @@ impl ToileApp {
         };
         self.stage
             .set_out_of_date(self.background_work.is_out_of_date());
-        self.stage.hides_body = self.background_work.is_on_another_body();
+        // A loop is laid on the present body.
+        self.stage.hides_body = self.background_work.is_on_another_body() && !self.lays_loop();
         self.stage.show(ui, empty);
         if !self.lays_loop() {
             self.drape_progress(ui, view);

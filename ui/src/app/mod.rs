@@ -334,6 +334,7 @@ impl ToileApp {
             self.refusal = None;
             self.view.opened(&self.base.pattern().clone());
             self.tables.forget_typed();
+            self.end_loop();
             self.background_work.clear();
             self.stage.clear_garment();
             if let Some(path) = self.session.project().source.clone() {

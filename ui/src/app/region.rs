@@ -10,7 +10,7 @@ use crate::tools::number;
 use crate::views::laid_loop::LaidLoop;
 use egui::{DragValue, Label, RichText, Ui};
 use toile_pattern::{Evaluation, Fabric, Ids, Number, Want, plan};
-use toile_session::{FlatSurface, FlattenOptions, SkinLoop};
+use toile_session::{FlatSurface, FlattenOptions, SkinLoop, Watcher};
 
 /// Width of the field for the ease (pixels).
 const FIELD: f32 = 60.0;
@@ -18,7 +18,7 @@ const FIELD: f32 = 60.0;
 const MAX_STRETCH: f64 = 50.0;
 /// Most darts that can be asked for.
 const MAX_DARTS: usize = 20;
-/// Name of the panel, unless it is taken.
+/// Name of the panel; where it is taken, the pattern gives another.
 const NAME: &str = "region";
 
 /// What is asked of the panel, and the work on it.
@@ -29,6 +29,8 @@ pub struct RegionChoice {
     stretch: f64,
     darts: usize,
     job: Option<Job<FlatSurface>>,
+    /// Whether the loop begins once the mannequin is made.
+    waits: bool,
 }
 
 impl Default for RegionChoice {
@@ -38,14 +40,15 @@ impl Default for RegionChoice {
             stretch: 2.0,
             darts: 2,
             job: None,
+            waits: false,
         }
     }
 }
 
 impl RegionChoice {
-    /// Whether a panel is being made.
+    /// Whether a panel is being made, or a loop waits for the mannequin.
     pub fn is_busy(&self) -> bool {
-        self.job.is_some()
+        self.job.is_some() || self.waits
     }
 }
 
@@ -61,11 +64,15 @@ impl ToileApp {
             return self.leave_loop();
         }
         self.panes.garment = true;
+        self.region.waits = self.background_work.is_making_body();
+        if self.region.waits {
+            self.notice = Notice::news("The mannequin is being made\u{2026}");
+            return;
+        }
         match self.session.mannequin() {
             Ok(mannequin) => {
                 self.stage.set_body(mannequin.skin());
-                let laid = SkinLoop::new(mannequin.skin().clone());
-                self.stage.laid = Some(LaidLoop::new(laid));
+                self.stage.laid = Some(LaidLoop::new(SkinLoop::new(mannequin)));
                 self.notice = Notice::news(
                     "Click places on the mannequin round a region; drag turns it. Enter makes the panel, Esc leaves",
                 );
@@ -74,11 +81,16 @@ impl ToileApp {
         }
     }
 
-    /// Ends the loop; the garment is shown again.
+    /// Ends the loop, and the work on its panel; the garment is shown again.
     pub(crate) fn leave_loop(&mut self) {
+        self.end_loop();
+        self.notice = Notice::default();
+    }
+
+    pub(super) fn end_loop(&mut self) {
         self.stage.laid = None;
         self.region.job = None;
-        self.notice = Notice::default();
+        self.region.waits = false;
     }
 
     /// Shows what is asked of the panel, and its buttons.
@@ -125,6 +137,7 @@ impl ToileApp {
             leaves = ui.button("Leave").clicked();
             let words = match is_busy {
                 true => "Flattening\u{2026}".to_owned(),
+                false if count == 1 => "1 place".to_owned(),
                 false => format!("{count} places"),
             };
             ui.add(Label::new(RichText::new(words).color(palette.ink_soft)).extend());
@@ -146,11 +159,15 @@ impl ToileApp {
 
     /// Begins to flatten the region inside the loop.
     fn make_region(&mut self) {
-        let Some(laid) = &self.stage.laid else { return };
+        let Some(laid) = &mut self.stage.laid else {
+            return;
+        };
         let ease = match number::parse(&self.region.ease, Want::Length, &self.base) {
             Ok(Number::Value(ease)) => ease,
             Ok(_) => return self.say_fault("Ease: type a length, as in 10mm".to_owned()),
-            Err(fault) => return self.say_fault(format!("Ease: {fault}")),
+            Err(fault) => {
+                return self.say_fault(format!("Ease: {fault}"));
+            }
         };
         let options = FlattenOptions {
             strain: self.region.stretch / 100.0,
@@ -163,8 +180,11 @@ impl ToileApp {
             None => Fabric::poplin(Ids::default().take()),
         };
         let skin = laid.skin.clone();
+        laid.is_held = true;
         self.notice = Notice::default();
-        self.region.job = Some(Job::start(move |_| skin.flatten(fabric, NAME, &options)));
+        self.region.job = Some(Job::start(move |follower| {
+            skin.flatten(fabric, (NAME, &options), follower.stop_flag())
+        }));
     }
 
     /// Takes a flattened region over into the pattern.
@@ -172,10 +192,19 @@ impl ToileApp {
         if let Some(words) = self.stage.take_refusal() {
             self.say_fault(words);
         }
+        if self.region.waits && !self.background_work.is_making_body() {
+            self.toggle_loop();
+        }
+        let Some(laid) = &mut self.stage.laid else {
+            // The loop was that of another body.
+            self.region.job = None;
+            return;
+        };
         let Some(result) = self.region.job.as_ref().and_then(Job::result) else {
             return;
         };
         self.region.job = None;
+        laid.is_held = false;
         let flat = match result {
             Ok(flat) => flat,
             Err(words) => return self.say_fault(words),

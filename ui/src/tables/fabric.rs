@@ -1,10 +1,10 @@
 //! The table of fabrics: what the garment is cut from, and the figures of each fabric of the pattern and of the
 //! library.
 
-use super::fabric_words::{bytes, colour_text, read_colour, shares};
+use super::fabric_words::{colour_text, read_colour, shares};
 use crate::app::ToileApp;
 use crate::fields::Entered;
-use crate::theme::Palette;
+use crate::theme::{Palette, bytes};
 use crate::tools::number;
 use egui::{Align, Color32, ComboBox, Id, Layout, Popup, RichText, ScrollArea, Sense, Ui, vec2};
 use toile_fabric::{LIBRARY, LibraryFabric};

@@ -1,5 +1,6 @@
 //! Sources of the figures of a fabric; colours as text.
 
+use crate::theme::bytes;
 use toile_fabric::LibraryFabric;
 use toile_pattern::Fabric;
 use toile_pattern::plan::FabricFigure;
@@ -40,11 +41,6 @@ pub fn own_source(figure: FabricFigure, fabric: &Fabric) -> String {
 pub fn colour_text(colour: [f64; 3]) -> String {
     let [red, green, blue] = bytes(colour);
     format!("#{red:02x}{green:02x}{blue:02x}")
-}
-
-/// Red, green and blue of a colour, in steps of 1/255.
-pub fn bytes(colour: [f64; 3]) -> [u8; 3] {
-    colour.map(|share| (share * 255.0).round() as u8)
 }
 
 /// Red, green and blue of a colour (0..=1), from steps of 1/255.

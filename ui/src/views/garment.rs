@@ -85,7 +85,14 @@ impl GarmentView {
         let first = self.body_bounds.is_none();
         self.body_bounds = skin.bounds();
         // A loop that was laid on another body is no loop of this one.
-        self.laid = self.laid.take().filter(|laid| laid.skin.is_on(skin));
+        if self
+            .laid
+            .as_ref()
+            .is_some_and(|laid| !laid.skin.is_on(skin))
+        {
+            self.laid = None;
+            self.refusal = Some("The wearer changed: lay the loop anew".to_owned());
+        }
         self.stale.body = true;
         self.wants_fit |= first;
     }
@@ -178,6 +185,10 @@ impl GarmentView {
         }
         let clicked = response.clicked().then(|| response.interact_pointer_pos());
         let Some(at) = clicked.flatten() else { return };
+        if laid.is_held {
+            self.refusal = Some("The panel is being made: wait, or Leave".to_owned());
+            return;
+        }
         let [eye, toward] = ray(&self.orbit, view, at);
         match laid.skin.add(eye, toward) {
             Ok(()) => laid.changed(Palette::of(ui.ctx())),
@@ -227,7 +238,7 @@ impl GarmentView {
             Some(_) => "",
         };
         self.draw(ui, view);
-        if let Some(laid) = &self.laid {
+        if let Some(laid) = &mut self.laid {
             laid.paint(&ui.painter().with_clip_rect(view), view, &self.orbit);
         }
         if !words.is_empty() {
@@ -299,8 +310,10 @@ impl GarmentView {
                 let (cloth, lines) = match &mut self.laid {
                     None => (&self.cloth_buffer, &self.line_buffer),
                     Some(laid) => {
-                        renderer.upload(&laid.lines, &mut laid.line_buffer);
-                        renderer.upload(&laid.strain, &mut laid.strain_buffer);
+                        if laid.is_stale {
+                            renderer.upload(&laid.lines, &mut laid.line_buffer);
+                            renderer.upload(&laid.strain, &mut laid.strain_buffer);
+                        }
                         laid.is_stale = false;
                         (&laid.strain_buffer, &laid.line_buffer)
                     }

@@ -5,7 +5,7 @@ use crate::gpu::CornerBuffer;
 use crate::gpu::orbit::Orbit;
 use crate::gpu::solid::{Corner, path_lines, shaded};
 use crate::theme::{self, Palette};
-use egui::{Align2, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use toile_geometry::Vec3;
 use toile_session::{FlatSurface, SkinLoop};
 
@@ -25,6 +25,10 @@ pub struct LaidLoop {
     pub(super) line_buffer: CornerBuffer,
     pub(super) strain_buffer: CornerBuffer,
     pub(super) is_stale: bool,
+    /// Whether the panel is being made: places stay as they are.
+    pub is_held: bool,
+    /// The eye that last looked, and whether it sees each place.
+    seen: Option<(Vec3, Vec<bool>)>,
     /// Limit of the stretch that the colours show (1), once a panel was made.
     limit: Option<f64>,
 }
@@ -39,6 +43,8 @@ impl LaidLoop {
             line_buffer: CornerBuffer::default(),
             strain_buffer: CornerBuffer::default(),
             is_stale: true,
+            is_held: false,
+            seen: None,
             limit: None,
         }
     }
@@ -51,6 +57,7 @@ impl LaidLoop {
         self.strain = Vec::new();
         self.limit = None;
         self.is_stale = true;
+        self.seen = None;
     }
 
     /// Shows the stretch of the cloth on the region.
@@ -63,14 +70,19 @@ impl LaidLoop {
     }
 
     /// Marks the places that can be seen, with their numbers.
-    pub(super) fn paint(&self, painter: &Painter, view: Rect, orbit: &Orbit) {
+    pub(super) fn paint(&mut self, painter: &Painter, view: Rect, orbit: &Orbit) {
         let palette = Palette::of(painter.ctx());
         let eye = orbit.eye();
-        for (k, place) in self.skin.places().iter().enumerate() {
+        let (skin, places) = (&self.skin, self.skin.places());
+        let known = self.seen.take().filter(|(from, _)| *from == eye);
+        let look = || places.iter().map(|place| skin.is_seen(*place, eye));
+        let (_, seen) = self
+            .seen
+            .insert(known.unwrap_or_else(|| (eye, look().collect())));
+        for (k, (place, &is_seen)) in places.iter().zip(&*seen).enumerate() {
             let Some(at) = on_screen(orbit, view, *place) else {
                 continue;
             };
-            let is_seen = self.skin.is_seen(*place, eye);
             let stroke = Stroke::new(1.5, palette.accent);
             match is_seen {
                 true => painter.circle(at, MARK, palette.accent, Stroke::new(1.5, palette.field)),
@@ -94,6 +106,12 @@ impl LaidLoop {
     }
 }
 
+/// The colour of a stretch (1) up to a limit (1).
+fn colour_of(stretch: f64, limit: f64) -> Color32 {
+    let [red, green, blue] = theme::bytes(FlatSurface::colour_of(stretch, limit));
+    Color32::from_rgb(red, green, blue)
+}
+
 /// The bar of colours of the stretch, with its ends in words.
 fn legend(painter: &Painter, view: Rect, limit: f64) {
     let palette = Palette::of(painter.ctx());
@@ -101,15 +119,14 @@ fn legend(painter: &Painter, view: Rect, limit: f64) {
     let step = LEGEND.x / STEPS as f32;
     for k in 0..STEPS {
         let share = (k as f64 + 0.5) / STEPS as f64;
-        let [red, green, blue] = FlatSurface::colour_of(share * limit, limit).map(|c| c as f32);
+        let colour = colour_of(share * limit, limit);
         let at = Rect::from_min_size(
             corner + vec2(step * k as f32, 0.0),
             vec2(step + 0.5, LEGEND.y),
         );
-        painter.rect_filled(at, 0.0, egui::Rgba::from_rgb(red, green, blue));
+        painter.rect_filled(at, 0.0, colour);
     }
-    let [red, green, blue] = FlatSurface::colour_of(2.0 * limit, limit).map(|c| (255.0 * c) as u8);
-    let over = egui::Color32::from_rgb(red, green, blue);
+    let over = colour_of(2.0 * limit, limit);
     let words = |at: Pos2, align, words: String, colour| {
         painter.text(at, align, words, theme::font(12.0), colour);
     };

@@ -70,5 +70,6 @@ pub fn options() -> Options {
         strain: 0.02,
         darts: 0,
         cuts: Vec::new(),
+        stop: None,
     }
 }

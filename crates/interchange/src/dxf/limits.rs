@@ -1,6 +1,6 @@
 //! How many points of a drawing are read.
 
-use super::block_piece::BlockPiece;
+use super::block_piece::{BlockLine, BlockPiece};
 use crate::FormatError;
 
 /// Most vertices of the outlines and lines of a pattern in its base size.
@@ -19,7 +19,8 @@ pub(super) fn check_points<'a>(
     let points = |piece: &BlockPiece| -> usize {
         let lines = [&piece.cut, &piece.sew, &piece.internal, &piece.cutouts];
         let lines = lines.into_iter().flatten();
-        lines.map(|line| line.points.len()).sum()
+        let between = |line: &BlockLine| line.between.iter().map(Vec::len).sum::<usize>();
+        lines.map(|line| line.points.len() + between(line)).sum()
     };
     let base: usize = pieces.map(points).sum();
     match base > MAX_POINTS || base.saturating_mul(sizes) > MAX_SIZED_POINTS {

@@ -201,7 +201,7 @@ impl PieceMaker {
         (fold, by): (Option<[Vec2; 2]>, f64),
     ) -> Option<DrawnLine> {
         let mut line = cut.clone();
-        let is_clockwise = ring_area(line.in_size(self.base)) < 0.0;
+        let is_clockwise = line.area(self.base) < 0.0;
         if is_clockwise {
             line.reverse();
         }

@@ -278,11 +278,7 @@ fn moved_in(cut: &DrawnLine, fold: Option<[Vec2; 2]>, by: f64) -> Option<DrawnLi
     };
     let on_fold: Vec<bool> = (0..cut.len()).map(is_fold).collect();
     let chords = cut.chords(0);
-    let vertex = |k: usize| {
-        let k = k % chords.points.len();
-        chords.starts.partition_point(|&start| start <= k) - 1
-    };
-    let moved = inset(&chords.points, |k| match on_fold[vertex(k)] {
+    let moved = inset(&chords.points, |k| match on_fold[chords.vertex(k)] {
         true => 0.0,
         false => by,
     })?;

@@ -262,15 +262,16 @@ fn measurements(
         return Ok(());
     }
     let (mut table, given) = table_of(rows);
-    for note in &rows.notes {
+    for out in &rows.impossible {
         let place = found.map_or("", |companion| companion.name.as_str());
-        let why = format!(
-            "{}; formulas have it",
-            note.trim_start_matches("left out: ")
-        );
-        build
-            .losses
-            .push(Loss::at(place, "a measurement of the wearer", why));
+        build.losses.push(Loss {
+            count: out.names.len(),
+            ..Loss::at(
+                place,
+                "measurements of the wearer",
+                format!("{}; formulas have them", out.why),
+            )
+        });
     }
     let complete = table.completed(Figure::Either);
     let others: Vec<OtherSize<'_>> = tables
@@ -358,6 +359,8 @@ struct OtherSize<'a> {
 fn table_of(rows: &SeamlyRows) -> (Measurements, BTreeMap<&str, f64>) {
     let mut table = Measurements::new();
     let mut given = BTreeMap::new();
+    let impossible = rows.impossible.iter().flat_map(|out| &out.names);
+    let impossible: BTreeSet<&String> = impossible.collect();
     for (theirs, number) in &rows.rows {
         let own = name_of(theirs);
         let quantity = quantity_of_measurement(&own);
@@ -368,7 +371,7 @@ fn table_of(rows: &SeamlyRows) -> (Measurements, BTreeMap<&str, f64>) {
         given.entry(theirs.as_str()).or_insert(si);
         // Measurements that are not in the catalogue are lengths in a table.
         let is_length = quantity == LENGTH || is_angle(&own);
-        let is_possible = !rows.impossible.contains(theirs);
+        let is_possible = !impossible.contains(theirs);
         let is_kept = *number != 0.0 && !table.contains(&own) && is_length && is_possible;
         if is_kept {
             // A name with other letters than a table may have becomes a variable.

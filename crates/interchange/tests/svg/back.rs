@@ -8,7 +8,8 @@ use toile_geometry::Vec2;
 use toile_interchange::{
     Fitting, Format, ReadOptions, SizedDraft, WriteSource, read_pattern, write,
 };
-use toile_pattern::{DisplayUnit, Panel, Pattern};
+use toile_measure::Measurements;
+use toile_pattern::{DisplayUnit, Evaluation, Panel, Pattern, plan};
 
 pub fn shirt() -> String {
     svg_of(&t_shirt(), None).unwrap()
@@ -211,13 +212,27 @@ fn one_node_moved_makes_that_panel_drawn_and_leaves_all_others() {
     assert!(count > 60, "{count}");
 }
 
+/// A pattern of two panels at random.
+fn two_stars(seed: u64) -> Pattern {
+    let star = |seed| {
+        let mut star = star_pattern(seed);
+        // Its notches have ids of their own.
+        star.ids.next = 1_000_000;
+        star
+    };
+    let mut pattern = star(seed);
+    let evaluated = |pattern: &Pattern| Evaluation::new(pattern, &Measurements::adult());
+    let other = evaluated(&star(seed + 1_000));
+    let pasted = plan::insert_pattern(&evaluated(&pattern), &other, [3.0, 0.0]).unwrap();
+    pattern.apply(&pasted.edits).unwrap();
+    pattern
+}
+
 #[test]
 fn random_patterns_come_back_whole_and_one_panel_edited() {
     let (mut written, mut edited) = (0, 0);
-    for seed in 0..150 {
-        let mut pattern = star_pattern(seed);
-        // Its notches have ids of their own.
-        pattern.ids.next = 1_000_000;
+    for seed in 0..200 {
+        let pattern = two_stars(seed);
         let Some(text) = svg_of(&pattern, None) else {
             continue;
         };
@@ -230,6 +245,12 @@ fn random_patterns_come_back_whole_and_one_panel_edited() {
             let reading = read(&moved).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
             let lines = |pattern: &Pattern| pattern.panel_named(panel).unwrap().lines.clone();
             assert_ne!(lines(&reading.pattern), lines(&pattern), "seed {seed}");
+            let others = |pattern: &Pattern| -> Vec<Panel> {
+                let others = pattern.panels.iter().filter(|other| other.name != *panel);
+                others.map(|panel| without_place(panel)).collect()
+            };
+            assert_eq!(others(&reading.pattern).len(), 1);
+            assert_eq!(others(&reading.pattern), others(&pattern), "seed {seed}");
             edited += 1;
         }
     }
@@ -254,6 +275,7 @@ fn nonsense_comes_back_where_it_can_be_written() {
         let reading = read(&text).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         assert_same(&reading.pattern, &expected, &format!("seed {seed}"));
     }
+    println!("{written} written");
     assert!(written > 0);
 }
 

@@ -5,6 +5,8 @@ use super::report::{FlattenOptions, FlattenReport, report_on};
 use super::strain_map::strain_scale;
 use crate::{SessionError, fabrics};
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use toile_drape::MaterialLaws;
 use toile_fabric::Material;
 use toile_flatten::{
@@ -75,10 +77,10 @@ impl FlatSurface {
     /// # Errors
     /// The region is no disk, or a number cannot be used.
     pub(super) fn of_skin(
-        skin: &TriangleMesh,
-        places: &[Vec3],
+        (skin, places): (&TriangleMesh, &[Vec3]),
         fabric: Fabric,
         (name, options): (&str, &FlattenOptions),
+        stop: Option<Arc<AtomicBool>>,
     ) -> Result<Self, SessionError> {
         check_ease(options.ease)?;
         let path = Path::new("the mannequin");
@@ -89,7 +91,7 @@ impl FlatSurface {
         };
         let target = Target::inside((skin, true), &asked, options, &mut notes)
             .map_err(|words| format_error(path, "the loop", &words))?;
-        Self::of_fabric(&target, (path, name), (options, notes), fabric)
+        Self::of_fabric(&target, (path, name), (options, notes), (fabric, stop))
     }
 
     /// Flattens a mesh or a region of one, which `path` names in errors.
@@ -99,16 +101,17 @@ impl FlatSurface {
         (options, mut notes): (&FlattenOptions, Vec<String>),
     ) -> Result<Self, SessionError> {
         let fabric = chosen_fabric(options.fabric.as_deref(), &mut notes)?;
-        Self::of_fabric(target, names, (options, notes), fabric)
+        Self::of_fabric(target, names, (options, notes), (fabric, None))
     }
 
     fn of_fabric(
         target: &Target,
         (path, name): (&Path, &str),
         (options, mut notes): (&FlattenOptions, Vec<String>),
-        fabric: Fabric,
+        (fabric, stop): (Fabric, Option<Arc<AtomicBool>>),
     ) -> Result<Self, SessionError> {
-        let flat = flattened(target, options, &fabric.material, path, &mut notes)?;
+        let of = (&fabric.material, stop);
+        let flat = flattened(target, options, of, path, &mut notes)?;
         let outline = panel_outline(&flat, TOLERANCE);
         let pattern = panel_pattern(name, fabric.clone(), &outline);
         let about = (options, fabric.name, target.edge(), notes);
@@ -206,16 +209,21 @@ impl Target {
         if options.follows_hollows {
             return Ok(Self::Region(Box::new(region.moved_out(options.ease)), edge));
         }
-        let (spanning, farthest) = region
+        let spanning = region
             .spanning_hollows(options.ease, edge, is_symmetrical)
             .map_err(|error| error.to_string())?;
-        if farthest > NEAR {
+        if spanning.farthest > NEAR {
             notes.push(format!(
                 "the cloth spans hollows of the surface, up to {:.0} mm deep",
-                farthest * 1e3
+                spanning.farthest * 1e3
             ));
         }
-        Ok(Self::Region(Box::new(spanning), edge))
+        if !spanning.at_rest {
+            notes.push(
+                "the cloth over the hollows had not come to rest: mesh it more coarsely".to_owned(),
+            );
+        }
+        Ok(Self::Region(Box::new(spanning.region), edge))
     }
 
     /// Length of the edges that a region is meshed with (m).
@@ -252,7 +260,7 @@ fn moved_out(mesh: &TriangleMesh, ease: f64) -> TriangleMesh {
 fn flattened(
     target: &Target,
     options: &FlattenOptions,
-    material: &Material,
+    (material, stop): (&Material, Option<Arc<AtomicBool>>),
     path: &Path,
     notes: &mut Vec<String>,
 ) -> Result<Flattened, SessionError> {
@@ -263,6 +271,7 @@ fn flattened(
             strain: options.strain,
             darts: options.darts,
             cuts: Vec::new(),
+            stop: stop.clone(),
         };
         match target {
             Target::Whole(mesh) => flatten(mesh, &options),
@@ -282,7 +291,13 @@ fn flattened(
             result => result,
         },
     };
-    result.map_err(|error| format_error(path, "the surface", &error.to_string()))
+    result.map_err(|error| {
+        let is_stopped = matches!(error, FlattenError::Stopped);
+        match is_stopped {
+            true => SessionError::Cancelled,
+            false => format_error(path, "the surface", &error.to_string()),
+        }
+    })
 }
 
 /// An error of words with the remedy after a semicolon.

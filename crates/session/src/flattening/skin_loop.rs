@@ -3,6 +3,9 @@
 use super::flat_surface::FlatSurface;
 use super::report::FlattenOptions;
 use crate::SessionError;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use toile_body::Mannequin;
 use toile_flatten::{LoopError, MAX_PLACES, MIN_PLACES, surface_path};
 use toile_geometry::{TriangleMesh, Vec3, ray_into_triangle};
 use toile_pattern::Fabric;
@@ -13,10 +16,10 @@ const SNAP: f64 = 0.008;
 /// Distance by which skin must be nearer than a place to hide it (m).
 const HIDDEN: f64 = 0.005;
 
-/// A loop of places on a skin, joined by shortest paths.
-#[derive(Clone, Debug)]
+/// A loop of places on the skin of a mannequin, joined by shortest paths.
+#[derive(Clone)]
 pub struct SkinLoop {
-    skin: TriangleMesh,
+    mannequin: Arc<Mannequin>,
     places: Vec<Vec3>,
     /// The shortest path to each place from the one before it (m); empty for the first.
     paths: Vec<Vec<Vec3>>,
@@ -25,10 +28,10 @@ pub struct SkinLoop {
 }
 
 impl SkinLoop {
-    /// A loop without places on a skin, which stands with its middle in the plane x = 0.
-    pub fn new(skin: TriangleMesh) -> Self {
+    /// A loop without places on a mannequin, which stands with its middle in the plane x = 0.
+    pub fn new(mannequin: Arc<Mannequin>) -> Self {
         Self {
-            skin,
+            mannequin,
             places: Vec::new(),
             paths: Vec::new(),
             closing: Vec::new(),
@@ -37,7 +40,7 @@ impl SkinLoop {
 
     /// Whether the loop is laid on a skin.
     pub fn is_on(&self, skin: &TriangleMesh) -> bool {
-        self.skin == *skin
+        self.mannequin.skin() == skin
     }
 
     /// Adds the place where a ray first meets the skin, on the middle plane if it is near that.
@@ -82,7 +85,7 @@ impl SkinLoop {
     }
 
     fn path(&self, from: Vec3, to: Vec3) -> Result<Vec<Vec3>, String> {
-        surface_path(&self.skin, [from, to]).map_err(|error| {
+        surface_path(self.mannequin.skin_tree(), [from, to]).map_err(|error| {
             let is_same = matches!(error, LoopError::Same(..));
             match is_same {
                 true => "this is the place before; click another".to_owned(),
@@ -93,8 +96,9 @@ impl SkinLoop {
 
     /// The first place where a ray enters the skin (m).
     fn met(&self, origin: Vec3, direction: Vec3) -> Option<Vec3> {
-        let corners = |t: &[u32; 3]| t.map(|v| self.skin.positions[v as usize]);
-        let triangles = self.skin.triangles.iter();
+        let skin = self.mannequin.skin();
+        let corners = |t: &[u32; 3]| t.map(|v| skin.positions[v as usize]);
+        let triangles = skin.triangles.iter();
         let hits = triangles.filter_map(|t| ray_into_triangle(origin, direction, corners(t)));
         let nearest = hits.min_by(f64::total_cmp)?;
         Some(origin + direction * nearest)
@@ -127,30 +131,30 @@ impl SkinLoop {
         &self.closing
     }
 
-    /// Flattens the region inside to a panel of a fabric; that of the options is not read.
+    /// Flattens the region inside to a panel of a fabric; that of the options is not read. It ends soon after `stop` is set.
     ///
     /// # Errors
-    /// The region is no disk, or a number cannot be used.
+    /// The region is no disk, a number cannot be used, or it was stopped.
     pub fn flatten(
         &self,
         fabric: Fabric,
-        name: &str,
-        options: &FlattenOptions,
+        (name, options): (&str, &FlattenOptions),
+        stop: Option<Arc<AtomicBool>>,
     ) -> Result<FlatSurface, SessionError> {
-        FlatSurface::of_skin(&self.skin, &self.places, fabric, (name, options))
+        let loop_on = (self.mannequin.skin(), &*self.places);
+        FlatSurface::of_skin(loop_on, fabric, (name, options), stop)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_body::{Figure, Mannequin};
+    use toile_body::Figure;
     use toile_pattern::{Ids, Severity};
 
-    fn woman() -> TriangleMesh {
+    fn woman() -> Arc<Mannequin> {
         let figure = Figure::Woman;
-        let woman = Mannequin::new(&figure.average(), figure).unwrap();
-        woman.skin().clone()
+        Arc::new(Mannequin::new(&figure.average(), figure).unwrap())
     }
 
     /// A ray from the front, at a place across and up (m).
@@ -177,10 +181,17 @@ mod tests {
             ease: 0.01,
             ..FlattenOptions::default()
         };
-        let flat = laid.flatten(fabric, "front", &options).unwrap();
+        let stopped = Some(Arc::new(AtomicBool::new(true)));
+        let made = laid.flatten(fabric.clone(), ("front", &options), stopped);
+        assert!(matches!(made, Err(SessionError::Cancelled)));
+        let flat = laid.flatten(fabric, ("front", &options), None).unwrap();
         let area = flat.report.panel_area_m2;
         assert!((0.005..0.01).contains(&area), "{area}");
-        assert_eq!(flat.colours().len(), flat.triangles().len());
+        // Each triangle has the colour of its own stretch.
+        for (colour, stretch) in flat.colours().into_iter().zip(flat.stretch()) {
+            let size = stretch.map(f64::abs).into_iter().fold(0.0, f64::max);
+            assert_eq!(colour, FlatSurface::colour_of(size, 0.02));
+        }
         laid.take_back();
         laid.take_back();
         assert!(!laid.is_whole() && laid.closing().is_empty());
@@ -188,7 +199,7 @@ mod tests {
 
     #[test]
     fn panels_of_clicked_regions_can_be_made() {
-        let skin = woman();
+        let woman = woman();
         let mut ids = Ids::default();
         let fabric = Fabric::poplin(ids.take());
         // Fronts of a bodice, with the breast inside, as one clicks them: from the middle of the waist round.
@@ -208,7 +219,7 @@ mod tests {
             [0.0, 1.26],
         ];
         for (places, darts) in [(&bodice[..], 2), (&bodice, 3), (&upper, 2), (&upper, 4)] {
-            let mut laid = SkinLoop::new(skin.clone());
+            let mut laid = SkinLoop::new(woman.clone());
             for &[x, y] in places {
                 let [origin, direction] = front(x, y);
                 laid.add(origin, direction).unwrap();
@@ -219,7 +230,9 @@ mod tests {
                 darts,
                 ..FlattenOptions::default()
             };
-            let flat = laid.flatten(fabric.clone(), "front", &options).unwrap();
+            let flat = laid
+                .flatten(fabric.clone(), ("front", &options), None)
+                .unwrap();
             let faults = flat.pattern.check(&toile_measure::Measurements::adult());
             let error = faults
                 .iter()

@@ -164,6 +164,8 @@ fn an_outline_that_returns_to_a_corner_or_touches_itself_goes_on_from_there() {
         ("a dart", [1, 2, 20, 21, 22, 23, 21, 24], 60.0),
         ("two darts", [1, 2, 21, 22, 21, 23, 21, 24], 45.0),
         ("the start", [1, 25, 26, 1, 2, 20, 21, 24], 60.0),
+        // What lies before the last return is left out, also where it is the larger part.
+        ("the end", [1, 2, 20, 21, 24, 1, 25, 26], 9.0),
         ("a touched line", [1, 2, 20, 27, 28, 29, 24, 24], 12.0),
     ] {
         let nodes = ids.map(|id| ("Point", id, ""));

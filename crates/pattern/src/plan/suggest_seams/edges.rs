@@ -11,7 +11,7 @@ pub(super) const CHORDS: usize = 32;
 const FLAT: f64 = 1e-4;
 /// Edges shorter than this are not sewn (m).
 const MIN_LENGTH: f64 = 5e-4;
-/// SeenCurve of a piece's height at its bottom within which an edge counts as the bottom edge (1).
+/// Part of a piece's height at its bottom within which an edge counts as the bottom edge (1).
 const BOTTOM: f64 = 0.1;
 /// Least cosine of the angle between a bottom edge and the direction across the grain (1).
 const LEVEL: f64 = 0.8;
