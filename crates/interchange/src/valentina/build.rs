@@ -32,6 +32,8 @@ pub(super) struct SheetInWork {
     lines: BTreeMap<[PointId; 2], CurveId>,
     /// Copies of points of other sheets.
     copies: BTreeMap<PointId, PointThing>,
+    /// Copies of curves of other sheets.
+    curve_copies: BTreeMap<CurveId, Arc<CurveThing>>,
 }
 
 /// A number of a tool: for the document, as a formula, and its value for the base size.
@@ -302,10 +304,55 @@ impl Build {
         copy
     }
 
-    /// The curve that an attribute of a tool names.
+    /// A curve, or its copy on the sheet that is built.
     ///
     /// # Errors
-    /// There is no such curve: in words.
+    /// A closed curve of another sheet, which a copy cannot follow: in words.
+    pub fn curve_on_this_sheet(
+        &mut self,
+        curve: &Arc<CurveThing>,
+    ) -> Result<Arc<CurveThing>, String> {
+        let sheet = self.current();
+        if curve.sheet == sheet {
+            return Ok(curve.clone());
+        }
+        let own = self.sheets.get(sheet);
+        let known = own.and_then(|own| own.curve_copies.get(&curve.id).cloned());
+        let whole = match known {
+            Some(known) => known,
+            None => {
+                let of = self.wholes.get(&curve.id).cloned();
+                let of = of.ok_or("its curve is not there")?;
+                if (of.ends[1].at - of.ends[0].at).norm() <= 1e-9 {
+                    return Err(format!(
+                        "{} of another drawing begins where it ends",
+                        of.name
+                    ));
+                }
+                let ends = of.ends.map(|end| self.on_this_sheet(end));
+                let rule = CurveRule::Copy { of: of.id };
+                let made = self.add_curve(&of.name, ends, rule, of.path.curves().to_vec());
+                if let Some(own) = self.sheets.get_mut(sheet) {
+                    own.curve_copies.insert(of.id, made.clone());
+                }
+                made
+            }
+        };
+        if curve.is_whole {
+            return Ok(whole);
+        }
+        Ok(Arc::new(CurveThing {
+            id: whole.id,
+            ends: curve.ends.map(|end| self.on_this_sheet(end)),
+            sheet,
+            ..(**curve).clone()
+        }))
+    }
+
+    /// The curve that an attribute of a tool names, or its copy on the sheet that is built.
+    ///
+    /// # Errors
+    /// There is no such curve, or it cannot be copied: in words.
     pub fn curve(
         &mut self,
         node: Node<'_, '_>,
@@ -321,7 +368,8 @@ impl Build {
                         curve.name
                     ));
                 }
-                Ok(curve.clone())
+                let curve = curve.clone();
+                self.curve_on_this_sheet(&curve)
             }
             Some(Thing::Point(_)) => Err(format!("its {attribute} is a point, not a curve")),
             None => Err(format!("its {attribute} is not there or was left out")),

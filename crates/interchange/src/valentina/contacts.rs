@@ -207,9 +207,6 @@ fn crossing_at(
     curves: [Arc<CurveThing>; 2],
     choose: impl Fn(&[Vec2]) -> Option<usize>,
 ) -> Made {
-    if curves.iter().any(|curve| curve.sheet != build.current()) {
-        return Err("a curve belongs to another drawing".to_owned());
-    }
     let wholes = [0, 1].map(|k| super::points::whole_path(build, &curves[k]));
     let found = wholes[0].crossings(&wholes[1]);
     let places: Vec<Vec2> = found.iter().map(|one| one.point).collect();

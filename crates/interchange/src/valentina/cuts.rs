@@ -25,9 +25,6 @@ pub(super) fn point(build: &mut Build, node: Node<'_, '_>, tool: &str) -> Option
 
 fn cut(build: &mut Build, node: Node<'_, '_>, attribute: &str) -> Made {
     let curve = build.curve(node, attribute)?;
-    if curve.sheet != build.current() {
-        return Err("its curve belongs to another drawing".to_owned());
-    }
     let total = curve.path.length();
     const NAME: &str = "CurrentLength";
     build.name_length(NAME.to_owned(), &curve.length, total);

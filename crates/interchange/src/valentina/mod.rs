@@ -17,6 +17,7 @@ mod contacts;
 mod curves;
 mod cuts;
 mod expression;
+mod joined_pieces;
 mod kinds;
 mod loops;
 mod nodes;
@@ -114,6 +115,7 @@ pub(crate) fn read_valentina(
         {
             calculation::read(&mut build, &xml, calculation);
         }
+        joined_pieces::read(&mut build, &xml, drawing, &modeling);
         pieces::read(&mut build, &xml, drawing, (&modeling, fabric), &mut panels);
     }
     if build.sheets.is_empty() {
@@ -135,7 +137,6 @@ fn left_aside(build: &mut Build, xml: &Xml<'_>) {
         ("group", "groups of objects"),
         ("finalMeasurment", "final measurements"),
         ("backgroudImage", "background images"),
-        ("tools", "joined pieces as a history"),
     ] {
         let all = xml.elements().filter(|node| node.has_tag_name(tag));
         let count = all.count();

@@ -113,7 +113,7 @@ fn piece_node(
     let gone = || format!("node {id}: its object {object} is not there or was left out");
     match thing.ok_or_else(gone)? {
         Thing::Curve(curve) => Ok(PieceNode::Curve {
-            curve,
+            curve: build.curve_on_this_sheet(&curve)?,
             reverse: is_yes(node, "reverse"),
         }),
         Thing::Point(point) => {
@@ -248,11 +248,6 @@ fn follow(build: &mut Build, nodes: &[PieceNode], is_closed: bool, outline: &mut
             PieceNode::Curve { curve, reverse } => {
                 let neighbours = [-1, 1].map(|step| neighbour(nodes, k, step, is_closed));
                 let (ends, path) = cut(curve, *reverse, neighbours);
-                if curve.sheet != build.current() {
-                    let why = format!("curve {:?} belongs to another drawing", curve.name);
-                    outline.lost.push(why);
-                    continue;
-                }
                 let start = go_to(build, outline, &mut reached, ends[0], None);
                 first.get_or_insert(start);
                 let Some(path) = path else {

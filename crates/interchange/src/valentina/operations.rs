@@ -15,7 +15,7 @@ use toile_pattern::{CurveId, CurveRule, Number, PointId, PointRule};
 const AXIS: f64 = 0.1;
 
 /// A motion of points and curves.
-enum Motion {
+pub(super) enum Motion {
     /// Turned round a point.
     Turned { centre: PointThing, angle: Slot },
     /// Moved in a direction.
@@ -26,8 +26,16 @@ enum Motion {
     Mirrored { line: [PointThing; 2] },
 }
 
+impl Motion {
+    /// One motion, then the other.
+    pub fn both(first: Self, second: Self) -> Self {
+        let both = [first, second].map(|motion| Moving::new(motion, String::new()));
+        Self::Both(Box::new(both))
+    }
+}
+
 /// A motion, its suffix for names, and what it has moved so far.
-struct Moving {
+pub(super) struct Moving {
     motion: Motion,
     suffix: String,
     points: HashMap<PointId, PointThing>,
@@ -73,10 +81,7 @@ fn shifted(build: &mut Build, node: Node<'_, '_>) -> Result<Motion, String> {
         Ok(number) if number > 0 => build.point(node, "center")?,
         Ok(_) | Err(_) => middle(build, node, &moved)?,
     };
-    let both = [moved, Motion::Turned { centre, angle }];
-    Ok(Motion::Both(Box::new(
-        both.map(|motion| Moving::new(motion, String::new())),
-    )))
+    Ok(Motion::both(moved, Motion::Turned { centre, angle }))
 }
 
 /// The middle of what an operation moves, after that; it is kept as the base size has it.
@@ -141,7 +146,13 @@ fn carry_out(build: &mut Build, node: Node<'_, '_>, motion: Motion) -> Result<()
     }
     let mut faults = Vec::new();
     for (from, to) in sources.into_iter().zip(destinations) {
-        if let Err(why) = carry(build, &mut moving, from, to) {
+        let names = ["name", "alias"].map(|attribute| from.attribute(attribute));
+        let names = names.into_iter().flatten().filter(|name| !name.is_empty());
+        let names: Vec<&str> = names.collect();
+        let numbers =
+            reference(from, "idObject").and_then(|from| Ok((from, reference(to, "idObject")?)));
+        if let Err(why) = numbers.and_then(|(from, to)| carry(build, &mut moving, from, to, &names))
+        {
             faults.push(why);
         }
     }
@@ -151,16 +162,14 @@ fn carry_out(build: &mut Build, node: Node<'_, '_>, motion: Motion) -> Result<()
     }
 }
 
-fn carry(
+/// Moves the part of a number, and gives its image another number and further names.
+pub(super) fn carry(
     build: &mut Build,
     moving: &mut Moving,
-    from: Node<'_, '_>,
-    to: Node<'_, '_>,
+    from: u32,
+    to: u32,
+    names: &[&str],
 ) -> Result<(), String> {
-    let names = ["name", "alias"].map(|attribute| from.attribute(attribute));
-    let names = names.into_iter().flatten().filter(|name| !name.is_empty());
-    let names: Vec<&str> = names.collect();
-    let (from, to) = (reference(from, "idObject")?, reference(to, "idObject")?);
     let thing = build.things.get(&from).cloned();
     let thing = thing.ok_or_else(|| format!("part {from} is not there or was left out"))?;
     let made = match thing {
@@ -170,11 +179,12 @@ fn carry(
             let name = format!("{}{}", build.file_name(point), moving.suffix);
             build.name_point(name, made);
             for name in names {
-                build.name_point(name.to_owned(), made);
+                build.name_point((*name).to_owned(), made);
             }
             Thing::Point(made)
         }
         Thing::Curve(curve) => {
+            let curve = build.curve_on_this_sheet(&curve)?;
             let made = moving.curve(build, &curve, to)?;
             for name in names {
                 build.name_also(&made.name, name);
@@ -226,7 +236,7 @@ fn image(motion: &Motion, piece: Piece) -> Piece {
 }
 
 impl Moving {
-    fn new(motion: Motion, suffix: String) -> Self {
+    pub fn new(motion: Motion, suffix: String) -> Self {
         Self {
             motion,
             suffix,
@@ -286,9 +296,6 @@ impl Moving {
     fn whole(&mut self, build: &mut Build, of: &CurveThing) -> Result<Arc<CurveThing>, String> {
         if let Some(known) = self.curves.get(&of.id) {
             return Ok(known.clone());
-        }
-        if of.sheet != build.current() {
-            return Err(format!("{} belongs to another drawing", of.name));
         }
         let whole = build.wholes.get(&of.id).cloned();
         let whole = whole.ok_or("its curve is not there")?;

@@ -69,7 +69,8 @@ pub(super) fn modeling(root: Node<'_, '_>) -> HashMap<u32, u32> {
         .collect()
 }
 
-fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
+/// The first child of an element with a tag.
+pub(super) fn child<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|child| child.has_tag_name(tag))
 }
 

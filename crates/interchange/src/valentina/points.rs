@@ -266,9 +266,6 @@ fn curve_intersect_axis(build: &mut Build, node: Node<'_, '_>) -> Made {
     let curve = build.curve(node, "curve")?;
     let tip = axis(build, node, base)?;
     let way = unit(tip.at - base.at)?;
-    if curve.sheet != build.current() {
-        return Err("its curve belongs to another drawing".to_owned());
-    }
     let whole = whole_path(build, &curve);
     let found = line_crossings(&whole, base.at, way);
     let ahead = |p: &Vec2| way.dot(&(*p - base.at));

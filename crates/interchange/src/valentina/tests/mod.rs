@@ -2,6 +2,7 @@
 
 mod damaged;
 mod formulas;
+mod joined_pieces;
 mod outlines;
 mod pieces;
 mod referee;
