@@ -10,7 +10,7 @@ use toile_pattern::NotchKind;
 /// Largest gap between the ends of open lines that meet (units of the file).
 const GAP: f64 = 0.02;
 
-/// Distance of the ends of a sew line from the fold that they lie on, as a share of its length (1).
+/// Distance of the ends of an outline from the fold that they lie on, as a share of its length (1).
 const ON_FOLD: f64 = 1e-3;
 /// Share of the square of its length below which a closed line encloses nothing (1).
 const FLAT: f64 = 1e-6;
@@ -125,6 +125,24 @@ impl BlockLine {
             .windows(2)
             .map(|pair| (pair[1] - pair[0]).norm())
             .sum()
+    }
+}
+
+/// Closes the outline of a half that ends on the fold.
+fn close_on_fold(lines: &mut [BlockLine], mirror: &[BlockLine]) {
+    if lines.iter().any(|line| line.is_closed) {
+        return;
+    }
+    for line in lines.iter_mut().filter(|line| line.points.len() > 2) {
+        let gap = ON_FOLD * line.length();
+        let ends = [line.points[0], line.points[line.points.len() - 1]];
+        let is_on = |fold: &BlockLine| {
+            ends.iter().all(|&end| {
+                let mut chords = fold.points.windows(2);
+                chords.any(|pair| point_segment_distance(end, [pair[0], pair[1]]) <= gap)
+            })
+        };
+        line.is_closed = mirror.iter().any(is_on);
     }
 }
 
@@ -243,37 +261,24 @@ impl BlockPiece {
                 Layer::TurnPoints | Layer::CurvePoints | Layer::Drill | Layer::Other => {}
             }
         }
-        let drawn = piece.cut.len();
+        close_on_fold(&mut piece.cut, &piece.mirror);
+        close_on_fold(&mut piece.sew, &piece.mirror);
+        piece.open_cuts = piece.cut.iter().filter(|line| !line.is_closed).count();
+        // The one line of a piece with a name is its outline.
+        let is_named = piece.label().is_some();
+        if let ([line], true) = (&mut piece.cut[..], is_named) {
+            line.is_closed = true;
+        }
         piece
             .cut
             .retain(|line| line.is_closed && line.shape().len() > 2);
-        piece.open_cuts = drawn - piece.cut.len();
         let closed = piece.cut.len();
         piece
             .cut
             .retain(|line| line.area() > FLAT * line.length().powi(2));
         piece.flat_cuts = closed - piece.cut.len();
         piece.cut.sort_by(|a, b| b.area().total_cmp(&a.area()));
-        piece.close_on_fold();
         piece
-    }
-
-    /// Closes the sew line of a half that ends on the fold.
-    fn close_on_fold(&mut self) {
-        if self.sew.iter().any(|line| line.is_closed) {
-            return;
-        }
-        for line in self.sew.iter_mut().filter(|line| line.points.len() > 2) {
-            let gap = ON_FOLD * line.length();
-            let ends = [line.points[0], line.points[line.points.len() - 1]];
-            let is_on = |fold: &BlockLine| {
-                ends.iter().all(|&end| {
-                    let mut chords = fold.points.windows(2);
-                    chords.any(|pair| point_segment_distance(end, [pair[0], pair[1]]) <= gap)
-                })
-            };
-            line.is_closed = self.mirror.iter().any(is_on);
-        }
     }
 
     fn point(&mut self, layer: Layer, is_u: bool, (at, thickness): (Vec2, Option<f64>)) {

@@ -143,7 +143,7 @@ impl EntityReader {
     }
 
     pub fn drawn(&mut self, kind: &str, group: &[Tag<'_>]) -> Result<Option<Drawn>, FormatError> {
-        let number = |code| value(group, code).map_or(Ok(None), |tag| tag.number().map(Some));
+        let number = |code| value(group, code).and_then(|tag| tag.number().ok());
         Ok(Some(match kind {
             "LINE" => match (place(group, 10)?, place(group, 11)?) {
                 (Some(from), Some(to)) => {
@@ -172,9 +172,9 @@ impl EntityReader {
             "POINT" => match place(group, 10)? {
                 Some(at) => Drawn::Point {
                     at,
-                    z: number(30)?,
-                    thickness: number(39)?,
-                    angle: number(50)?,
+                    z: number(30),
+                    thickness: number(39),
+                    angle: number(50),
                 },
                 None => return Ok(None),
             },

@@ -7,6 +7,32 @@ use crate::drawn::twin::between;
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;
 
+/// Vertices that lie nearer to the one before in every size are repeats (m).
+const REPEAT: f64 = 1e-6;
+/// Length of an edge that has none in the file in some size (m).
+const SHORT: f64 = 1e-5;
+
+/// Leaves out repeated vertices of a line, and gives an edge that vanishes in some sizes alone a length there: its end
+/// moves on towards the next vertex.
+pub(super) fn tell_apart(line: &mut DrawnLine) {
+    line.drop_repeats(REPEAT);
+    for points in line.by_size.iter_mut().filter(|_| line.is_closed) {
+        let own = points.clone();
+        let count = own.len();
+        let is_apart = |a: usize, b: usize| (own[a % count] - own[b % count]).norm() > REPEAT;
+        let Some(first) = (0..count).find(|&k| is_apart(k, k + count - 1)) else {
+            continue;
+        };
+        for k in first + 1..first + count {
+            let next = (k + 1..k + count).find(|&next| is_apart(next, k));
+            if let (false, Some(next)) = (is_apart(k, k - 1), next) {
+                let way = own[next % count] - own[k % count];
+                points[k % count] = points[(k - 1) % count] + way * (SHORT / way.norm());
+            }
+        }
+    }
+}
+
 /// A piece in its sizes, whose lines are taken.
 #[derive(Clone, Copy)]
 pub(super) struct SizedPiece<'a> {

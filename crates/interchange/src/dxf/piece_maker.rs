@@ -1,7 +1,7 @@
 //! Makes a drawn piece, in metres, of the blocks of its sizes.
 
 use super::block_piece::{BlockLine, BlockPiece};
-use super::piece_lines::{FoundLine, SizedPiece};
+use super::piece_lines::{FoundLine, SizedPiece, tell_apart};
 use super::piece_marks::{corners, drills, notches, with_marks};
 use super::sized_pieces::NestedPiece;
 use crate::Loss;
@@ -13,8 +13,6 @@ use toile_pattern::Cut;
 
 /// Largest distance of a vertex from the fold line that it lies on (m).
 const ON_FOLD: f64 = 5e-4;
-/// Vertices that lie nearer to the one before in every size are repeats (m).
-const REPEAT: f64 = 1e-6;
 /// Largest allowance between a sew line on the layer of internal lines and the cut line (m).
 const MAX_ALLOWANCE: f64 = 0.05;
 /// Least share of the area within the cut line that lies within such a sew line (1).
@@ -62,7 +60,12 @@ impl PieceMaker {
         let cut = self.told(name, piece.line(|piece| piece.cut.first(), 84))?;
         let cut_points = cut.in_size(self.base).to_vec();
         let fold = own.mirror.first().map(|line| {
-            [line.points[0], line.points[line.points.len() - 1]].map(|p| p * self.unit)
+            let from = line.points[0];
+            let off = |p: &Vec2| (p - from).norm();
+            // A line that is drawn twice runs there and back.
+            let to = line.points.iter().copied();
+            let to = to.max_by(|a, b| off(a).total_cmp(&off(b)));
+            [from, to.unwrap_or(from)].map(|p| p * self.unit)
         });
         let place = self.sew_line(own, &cut_points);
         let sew = match place {
@@ -78,7 +81,7 @@ impl PieceMaker {
         let mut outline = sew.unwrap_or_else(|| cut.clone());
         outline.is_corner = corners(&outline, &cut_points, own, (self.base, self.unit));
         let drills = drills(own, &nested.sized, (&outline, self.base, self.unit));
-        outline.drop_repeats(REPEAT);
+        tell_apart(&mut outline);
         let mut drawn = DrawnPiece {
             name: name.to_owned(),
             fabric: own.labels.value(&["fabric", "material"]).map(str::to_owned),
@@ -89,11 +92,10 @@ impl PieceMaker {
             grain: own
                 .grain
                 .iter()
-                .max_by(|a, b| a.length().total_cmp(&b.length()))
-                .map(|line| {
-                    let along = line.points[line.points.len() - 1] - line.points[0];
-                    along.y.atan2(along.x)
-                }),
+                // Arrows at its ends are shorter.
+                .flat_map(|line| line.points.windows(2).map(|ends| ends[1] - ends[0]))
+                .max_by(|a, b| a.norm().total_cmp(&b.norm()))
+                .map(|along| along.y.atan2(along.x)),
             fold,
             drills,
             outline,
@@ -108,7 +110,7 @@ impl PieceMaker {
     fn with_corners(&self, mut cut: DrawnLine, own: &BlockPiece) -> DrawnLine {
         let points = cut.in_size(self.base).to_vec();
         cut.is_corner = corners(&cut, &points, own, (self.base, self.unit));
-        cut.drop_repeats(REPEAT);
+        tell_apart(&mut cut);
         cut
     }
 
@@ -156,7 +158,7 @@ impl PieceMaker {
         let why = "they are not the closed outline; kept as lines inside";
         self.lost(&name, (further, "sew lines", why));
         for line in drawn.inside.iter_mut().chain(&mut drawn.holes) {
-            line.drop_repeats(REPEAT);
+            tell_apart(line);
         }
         drawn.inside.retain(|line| line.len() > 1);
         drawn
@@ -249,7 +251,11 @@ impl PieceMaker {
                 "depths of notches",
                 "all are cut as deep as this program does",
             ),
-            (own.open_cuts, "cut lines", "they are not closed"),
+            (
+                own.open_cuts,
+                "cut lines",
+                "they are not closed; the only line of a named piece is closed straight",
+            ),
             (own.flat_cuts, "closed cut lines", "they enclose nothing"),
             (
                 own.mirror.len().saturating_sub(1),

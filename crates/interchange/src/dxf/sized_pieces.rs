@@ -79,8 +79,11 @@ impl Nest {
         if is_sample {
             sizes = of_sample;
         }
-        if sizes.is_empty() {
-            sizes = self.sizes_of_names(&pieces);
+        if sizes.len() < 2 && pieces.iter().any(|piece| piece.size().is_none()) {
+            let of_names = self.sizes_of_names(&pieces, sizes.first());
+            if !of_names.is_empty() {
+                sizes = of_names;
+            }
         }
         // Of two sizes that a name ends in, the longer one is meant.
         sizes.sort_by_key(|size| std::cmp::Reverse(size.len()));
@@ -115,14 +118,15 @@ impl Nest {
         named.collect()
     }
 
-    /// The sizes that the names of blocks end in, where no label tells any: every piece must have all of them, with as
-    /// many vertices in each.
-    fn sizes_of_names(&mut self, pieces: &[BlockPiece]) -> Vec<String> {
+    /// The sizes that the names of blocks end in, where no label tells any, or those of the sample alone: every piece
+    /// must have all of them, with as many vertices in each.
+    fn sizes_of_names(&mut self, pieces: &[BlockPiece], sample: Option<&String>) -> Vec<String> {
         let mut by_stem: BTreeMap<&str, (HashSet<&str>, HashSet<usize>)> = BTreeMap::new();
         let mut sizes: Vec<&str> = Vec::new();
         for piece in pieces {
             let parts = piece.block.rsplit_once(['_', '-', ' ']);
-            let Some((stem, size)) = parts.filter(|(_, size)| is_size(size)) else {
+            let Some((stem, size)) = parts.filter(|(_, size)| sample.is_some() || is_size(size))
+            else {
                 return Vec::new();
             };
             let own = by_stem.entry(stem).or_default();
@@ -137,13 +141,14 @@ impl Nest {
             }
         }
         let has_all = by_stem.values().all(|(own, _)| own.len() == sizes.len());
-        if sizes.len() < 2 || !has_all {
+        let has_sample = sample.is_none_or(|sample| sizes.contains(&sample.as_str()));
+        if sizes.len() < 2 || !has_all || !has_sample {
             return Vec::new();
         }
         self.guesses.push(Guess {
             what: "sizes",
             chosen: sizes.join(", "),
-            because: "no text tells sizes, and the names of all blocks end so".to_owned(),
+            because: "no text tells them, and the names of all blocks end so".to_owned(),
             option: ReadOption::Format,
         });
         sizes.into_iter().map(str::to_owned).collect()

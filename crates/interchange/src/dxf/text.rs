@@ -22,7 +22,14 @@ impl TextEncoding {
                 page.and_then(|page| Encoding::for_label(page.as_bytes()))
             }
         };
-        let mut candidates = [Some(UTF_8), stated, Some(GBK)].into_iter().flatten();
+        // Bytes of Chinese signs stand in pairs, accented letters mostly alone.
+        let beyond = bytes.iter().filter(|byte| !byte.is_ascii()).count();
+        let is_alone =
+            |around: &&[u8]| [0, 1, 2].map(|k| around[k].is_ascii()) == [true, false, true];
+        let is_chinese = 2 * bytes.windows(3).filter(is_alone).count() < beyond;
+        let mut candidates = [Some(UTF_8), stated, is_chinese.then_some(GBK)]
+            .into_iter()
+            .flatten();
         let fits = |encoding: &&'static Encoding| {
             let found = encoding.decode_without_bom_handling_and_without_replacement(bytes);
             found.is_some()
@@ -82,6 +89,10 @@ mod tests {
         assert_eq!(decoded(b"\\U+D83D\\U+DE00", b""), "\u{1f600}");
         assert_eq!(decoded(b"\xba\xf3\xc6\xac", b""), "后片");
         assert_eq!(decoded(b"\xc4rmel", b"ANSI_1252"), "Ärmel");
+        assert_eq!(
+            decoded(b" DOS \xc9L\xc9GANT, \xc4rmel ", b"").trim(),
+            "DOS ÉLÉGANT, Ärmel"
+        );
         assert_eq!(
             decoded(b"\xcf\xee\xeb\xee\xf7\xea\xe0", b"ansi_1251"),
             "Полочка"
