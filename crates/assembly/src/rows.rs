@@ -152,7 +152,8 @@ fn group_lift(
     }
 }
 
-/// Whether a front is sewn to a back along the top of both, which distinguishes tops from skirts.
+/// Whether a front is sewn to a back along the top of both, which distinguishes tops from skirts. A dart in the shoulder
+/// makes that of one side steep: both together are wider than high.
 fn has_shoulder_seam(
     members: &[usize],
     laid: &[FlatPiece],
@@ -172,15 +173,16 @@ fn has_shoulder_seam(
             );
             let size = laid[k].high.y - laid[k].low.y;
             let near_top = low.y > laid[k].high.y - 0.25 * size;
-            let flat = high.x - low.x > high.y - low.y;
             let narrow = high.x - low.x < 0.45 * laid[k].width();
-            Some((wrapped(&roles[k])?.1, near_top && flat && narrow))
+            let facing = wrapped(&roles[k])?.1;
+            (near_top && narrow).then_some((facing, high - low))
         });
-        matches!(
-            ends,
-            [Some((Facing::Front, true)), Some((Facing::Back, true))]
-                | [Some((Facing::Back, true)), Some((Facing::Front, true))]
-        )
+        let [Some((first, a)), Some((second, b))] = ends else {
+            return false;
+        };
+        let sides = [first, second];
+        let is_both = sides.contains(&Facing::Front) && sides.contains(&Facing::Back);
+        is_both && a.x + b.x > a.y + b.y
     })
 }
 

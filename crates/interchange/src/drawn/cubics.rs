@@ -1,10 +1,10 @@
 //! The curve between two corners of a line as cubics: those that the file gives; else fitted to the points of the curve that the file has between the
-//! vertices, else a natural cubic spline through the vertices.
+//! vertices, else a cubic spline through the vertices.
 
 use super::corners::lies_along;
 use super::fit::{along, chord_handles, free};
 use super::piece::{DrawnLine, Span};
-use super::spline::{handles, natural_slopes};
+use super::spline::{handles, slopes_of};
 use toile_geometry::{Curve, Vec2};
 
 /// Largest distance of a cubic from the points that it is fitted to (m).
@@ -148,7 +148,7 @@ impl Dense {
     fn of(line: &DrawnLine, (from, to): (usize, usize), size: usize) -> Self {
         let (points, vertices) = line.stretch(size, (from, to));
         Self {
-            slopes: natural_slopes(&points),
+            slopes: slopes_of(&points),
             points,
             vertices,
         }
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn without_points_between_in_every_size_it_is_the_natural_spline() {
+    fn without_points_between_in_every_size_it_is_the_spline_through_the_vertices() {
         let mut line = quarter();
         line.between[1].iter_mut().for_each(Vec::clear);
         let found = cubics(&line, (0, 2), 2);

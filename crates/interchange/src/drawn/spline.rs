@@ -1,25 +1,29 @@
-//! Natural cubic splines through the vertices of a curve, by chord length (Farin 2002, chapter 9).
+//! Cubic splines through the vertices of a curve, by chord length, with parabolas at the ends (Farin 2002, chapter 9).
+//! A natural spline has no curvature at its ends: its tangent there, on which the corner of an allowance depends, would be
+//! off by a quarter of the turn between two vertices.
 
 use toile_geometry::Vec2;
 
-/// Derivatives at points by the arc length of the chords (1), of the natural cubic spline through them. Two
+/// Derivatives at points by the arc length of the chords (1), of the cubic spline through them. Two
 /// points give the direction of their chord.
-pub(crate) fn natural_slopes(points: &[Vec2]) -> Vec<Vec2> {
+pub(crate) fn slopes_of(points: &[Vec2]) -> Vec<Vec2> {
     let n = points.len();
-    if n < 2 {
-        return vec![Vec2::zeros(); n];
-    }
     let chords: Vec<Vec2> = points.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if n <= 2 {
+        let chord = chords.first().copied().unwrap_or_default();
+        return vec![chord / chord.norm().max(f64::MIN_POSITIVE); n];
+    }
     let h: Vec<f64> = chords
         .iter()
         .map(|chord| chord.norm().max(f64::MIN_POSITIVE))
         .collect();
-    // Rows of a tridiagonal system for the derivatives: at the ends the second derivative is 0.
+    // Rows of a tridiagonal system for the derivatives: the curve is a parabola between the last two points.
     let mut diagonal = vec![2.0; n];
+    (diagonal[0], diagonal[n - 1]) = (1.0, 1.0);
     let (mut lower, mut upper) = (vec![0.0; n], vec![0.0; n]);
     let mut right = vec![Vec2::zeros(); n];
     upper[0] = 1.0;
-    right[0] = chords[0] * (3.0 / h[0]);
+    right[0] = chords[0] * (2.0 / h[0]);
     for k in 1..n - 1 {
         let weight = h[k] / (h[k - 1] + h[k]);
         lower[k] = weight;
@@ -28,7 +32,7 @@ pub(crate) fn natural_slopes(points: &[Vec2]) -> Vec<Vec2> {
             (chords[k - 1] * (weight / h[k - 1]) + chords[k] * ((1.0 - weight) / h[k])) * 3.0;
     }
     lower[n - 1] = 1.0;
-    right[n - 1] = chords[n - 2] * (3.0 / h[n - 2]);
+    right[n - 1] = chords[n - 2] * (2.0 / h[n - 2]);
     for k in 1..n {
         let factor = lower[k] / diagonal[k - 1];
         diagonal[k] -= factor * upper[k - 1];
@@ -49,7 +53,7 @@ pub(crate) fn natural_slopes(points: &[Vec2]) -> Vec<Vec2> {
 /// spline that turns back against one of its chords overshoots; its handles are then those of straight chords,
 /// and the flag is `true`.
 pub(crate) fn handles(points: &[Vec2]) -> (Vec<[Vec2; 2]>, bool) {
-    let slopes = natural_slopes(points);
+    let slopes = slopes_of(points);
     let pairs = || points.windows(2).zip(slopes.windows(2));
     let overshoots = pairs().any(|(ends, slopes)| {
         let chord = ends[1] - ends[0];
@@ -75,7 +79,7 @@ mod tests {
     fn a_straight_row_stays_straight() {
         let points: Vec<Vec2> = [0.0, 0.3, 1.0, 1.4].map(|x| Vec2::new(x, 2.0 * x)).to_vec();
         let direction = Vec2::new(1.0, 2.0).normalize();
-        for slope in natural_slopes(&points) {
+        for slope in slopes_of(&points) {
             assert!((slope - direction).norm() < 1e-12);
         }
     }
@@ -95,11 +99,12 @@ mod tests {
             let off = (1..8).map(|t| (curve.point(f64::from(t) / 8.0).norm() - 1.0).abs());
             off.fold(0.0, f64::max)
         };
-        // Chords are off by 1 - cos(0.125) = 7.8e-3. At its ends a natural spline has no curvature, an arc has.
-        let inner = (1..5).map(error).fold(0.0, f64::max);
-        assert!(inner < 1e-3, "{inner}");
-        let ends = error(0).max(error(5));
-        assert!(ends < 4e-3, "{ends}");
+        // Chords are off by 1 - cos(0.125) = 7.8e-3.
+        let all = (0..6).map(error).fold(0.0, f64::max);
+        assert!(all < 2e-4, "{all}");
+        // The tangent at the start goes straight up.
+        let start = handles[0][0] - points[0];
+        assert!((start.x / start.y).abs() < 2e-3, "{start:?}");
     }
 
     #[test]
@@ -112,8 +117,8 @@ mod tests {
 
     #[test]
     fn few_points_are_no_fault() {
-        assert!(natural_slopes(&[]).is_empty());
-        assert_eq!(natural_slopes(&[Vec2::zeros()]), [Vec2::zeros()]);
+        assert!(slopes_of(&[]).is_empty());
+        assert_eq!(slopes_of(&[Vec2::zeros()]), [Vec2::zeros()]);
         assert!(handles(&[Vec2::zeros()]).0.is_empty());
         let twice = [Vec2::zeros(), Vec2::zeros()];
         assert!(handles(&twice).0[0].iter().all(|p| p.norm() == 0.0));
