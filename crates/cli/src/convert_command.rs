@@ -4,7 +4,7 @@ use crate::convert_arguments::Convert;
 use crate::output::{Failure, Output};
 use serde_json::{Value, json};
 use toile_session::{
-    Choice, ConvertOptions, Converted, SizeSelection, WrittenPattern, convert as convert_file,
+    Choice, ConvertOptions, Converted, Loss, SizeSelection, WrittenPattern, convert as convert_file,
 };
 
 /// A pattern in another format, with what was guessed in reading and lost in writing.
@@ -33,7 +33,11 @@ pub fn convert(convert: &Convert, output: &Output) -> Result<Value, Failure> {
         output.say(format!("note: {note}"));
     }
     for loss in &losses {
-        output.say(format!("not carried over: {loss}"));
+        let remedy = match loss.why == Loss::NOT_ASKED_FOR {
+            true => "; --all-sizes writes them",
+            false => "",
+        };
+        output.say(format!("not carried over: {loss}{remedy}"));
     }
     for file in &files {
         output.say(format!("wrote {}", file.display()));

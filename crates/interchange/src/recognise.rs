@@ -204,6 +204,12 @@ impl ExpectedKind {
         };
         Err(FormatError::new("the whole file", what, hint))
     }
+
+    /// The refusal of content that is of no kind.
+    pub(crate) fn unknown(self) -> FormatError {
+        let what = "this is a file of no format that is known here";
+        FormatError::new("the whole file", what, self.reads())
+    }
 }
 
 /// Recognises a kind by its first bytes.

@@ -202,7 +202,7 @@ impl Pieces {
         if !self.pieces.is_empty() {
             self.guesses.push(Guess {
                 what: "pieces",
-                chosen: format!("{} outermost closed lines", self.pieces.len()),
+                chosen: format!("outermost closed lines ({})", self.pieces.len()),
                 because: "the file has no blocks, which pieces are in these formats".to_owned(),
                 option: ReadOption::Format,
             });

@@ -89,7 +89,7 @@ pub(crate) fn read_dxf(
             what: "sew line",
             chosen: "the cut line with no allowance".to_owned(),
             because: format!(
-                "{} of {} pieces have no sew line",
+                "pieces without a sew line: {} of {}",
                 maker.without_sew_line,
                 drawn.pieces.len()
             ),

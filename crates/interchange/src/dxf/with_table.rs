@@ -70,7 +70,7 @@ pub(super) fn with_table(
             pieces,
             guesses: vec![Guess {
                 what: "sizes",
-                chosen: "those of the blocks".to_owned(),
+                chosen: "the sizes of the blocks".to_owned(),
                 because: format!("the file has blocks of its sizes, and {file} is not needed"),
                 option: ReadOption::With,
             }],

@@ -27,7 +27,7 @@ impl fmt::Display for Guess {
         } = self;
         write!(
             f,
-            "{what}: {chosen} is taken: {because}; {option} says otherwise"
+            "{what}, guessed: {chosen}: {because}; {option} says otherwise"
         )
     }
 }

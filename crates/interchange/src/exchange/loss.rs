@@ -19,6 +19,9 @@ pub struct Loss {
 }
 
 impl Loss {
+    /// Why sizes are left out that the format holds: they were not asked for.
+    pub const NOT_ASKED_FOR: &str = "not asked for, and not written";
+
     /// Contents of a whole document that a format has no place for.
     pub fn of(content: Content, count: usize, why: impl Into<String>) -> Self {
         Self {

@@ -76,6 +76,9 @@ pub fn read(
             ExpectedKind::Pattern.check(bytes)?;
             let kind = FileKind::of(bytes);
             let known = kind.and_then(Format::of_kind);
+            if kind.is_none() && !begins_as_json(bytes) {
+                return Err(ExpectedKind::Pattern.unknown());
+            }
             // A damaged file goes to the native reader, which says where it is damaged.
             known.unwrap_or(if looks_like_garmentcode(bytes) {
                 Format::GarmentCode
@@ -145,6 +148,13 @@ pub fn read(
             })
         }
     }
+}
+
+/// Whether a file begins as JSON does.
+fn begins_as_json(bytes: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(bytes);
+    let text = text.trim_start_matches('\u{feff}').trim_start();
+    text.starts_with(['{', '['])
 }
 
 /// Whether damaged JSON is rather a GarmentCode specification than a native file.

@@ -27,7 +27,11 @@ pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, Format
             "add a panel, or have one cut at least once",
         ));
     }
-    let whole = losses(source.pattern, format);
+    let mut whole = losses(source.pattern, format);
+    if let Some(left) = sizes_left(source).filter(|_| format.holds_sizes()) {
+        whole.retain(|loss| loss.what != Content::Sizes.words());
+        whole.insert(0, left);
+    }
     let one = |text: String, further: Vec<Loss>| {
         let bytes = text.into_bytes();
         let ending = format.ending();
@@ -71,6 +75,15 @@ pub fn write(source: &WriteSource<'_>, format: Format) -> Result<Writing, Format
             format!("patterns are written as {}", Format::written_words()),
         )),
     }
+}
+
+/// The sizes of the pattern that are none of the drafts, if there are any.
+fn sizes_left(source: &WriteSource<'_>) -> Option<Loss> {
+    let drafts = source.drafts.iter();
+    let written: Vec<&String> = drafts.filter_map(|sized| sized.size.as_ref()).collect();
+    let sizes = source.pattern.sizes.iter();
+    let left = sizes.filter(|size| !written.contains(&&size.name)).count();
+    (left > 0).then(|| Loss::of(Content::Sizes, left, Loss::NOT_ASKED_FOR))
 }
 
 /// The loss of a fitting, if it says anything but the size, which is the one that is written.
