@@ -6,7 +6,7 @@ mod drafter;
 
 use drafter::Drafter;
 use egui::{Key, Modifiers, Role};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_geometry::Bounds2;
@@ -202,4 +202,68 @@ fn a_dropped_picture_is_refused_by_name() {
     drop_files(&mut drafter, &[&picture]);
     assert!(drafter.status().contains("picture"), "{}", drafter.status());
     assert_eq!(drafter.pattern(), pattern);
+}
+
+#[test]
+fn after_a_list_the_keys_go_to_the_tool() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = t_shirt_dxf(folder.path());
+    let mut drafter = Drafter::new();
+    drop_files(&mut drafter, &[&file]);
+    for (unit, takes_tool_before) in [("cm", false), ("mm", true)] {
+        if takes_tool_before {
+            drafter.chord(Modifiers::SHIFT, Key::U);
+        }
+        choose(&mut drafter, "Unit of the file", unit);
+        let list = drafter
+            .window
+            .get_by_role_and_label(Role::ComboBox, "Unit of the file");
+        list.focus();
+        drafter.window.run();
+        drafter.chord(Modifiers::SHIFT, Key::U);
+        assert!(
+            drafter.status().contains("Candidate 1 of"),
+            "{}",
+            drafter.status()
+        );
+        drafter.key(Key::Tab);
+        assert!(
+            drafter.status().contains("Candidate 2 of"),
+            "{}",
+            drafter.status()
+        );
+        assert!(drafter.pattern().seams.is_empty());
+        drafter.key(Key::Enter);
+        assert!(!drafter.pattern().seams.is_empty(), "{}", drafter.status());
+        drafter.chord(Modifiers::COMMAND, Key::Z);
+    }
+}
+
+#[test]
+fn every_loss_is_told_whole_in_words_of_the_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = t_shirt_dxf(folder.path());
+    let table = file.with_extension("rul");
+    // Texts of another program, and no table of rules.
+    let text = std::fs::read_to_string(&file).unwrap();
+    let point = "  0\nTEXT\n  8\n1\n 10\n1.0\n 20\n1.0\n 40\n0.1\n  1\n# 7\n  0\nENDBLK";
+    let text = text.replace("\r\n", "\n").replace("  0\nENDBLK", point);
+    std::fs::write(&file, text).unwrap();
+    let mut drafter = Drafter::new();
+    drop_files(&mut drafter, &[&file, &table]);
+    let press = |drafter: &mut Drafter, what: &str| {
+        let buttons = drafter.window.query_all_by_role(Role::Button);
+        let labels = buttons.filter_map(|button| button.accesskit_node().label());
+        let labels: Vec<String> = labels.collect();
+        let label = labels.into_iter().find(|label| label.ends_with(what));
+        let label = label.unwrap_or_else(|| panic!("{what}: {}", drafter.status()));
+        drafter.press(&label);
+        println!("{label}: {}", drafter.status());
+        assert!(!drafter.status().contains("--"), "{}", drafter.status());
+        let count: usize = label.split(' ').next().unwrap().parse().unwrap();
+        drafter.key(Key::Escape);
+        count
+    };
+    assert!(press(&mut drafter, " guessed") > 0);
+    assert!(press(&mut drafter, " left out") > 0);
 }

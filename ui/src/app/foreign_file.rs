@@ -8,7 +8,7 @@ use super::notice::Notice;
 use crate::fields::text_field;
 use crate::theme::Palette;
 use crate::tools::number;
-use egui::{Align, ComboBox, Layout, RichText, Ui};
+use egui::{Align, ComboBox, Layout, RichText, ScrollArea, Ui};
 use std::path::{Path, PathBuf};
 use toile_pattern::{Number, Want};
 use toile_session::{
@@ -18,6 +18,8 @@ use toile_session::{
 
 /// Width of a list in the bar (pixels).
 const LIST: f32 = 110.0;
+/// Width of the lines that the bar tells (pixels).
+const LINES: f32 = 480.0;
 /// Width of a field in the bar (pixels).
 const FIELD: f32 = 70.0;
 
@@ -27,6 +29,8 @@ pub struct ForeignFile {
     /// How it was read.
     options: OpenOptions,
     found: FoundInFile,
+    /// What the file does not say, with the answers that were taken, in words.
+    guessed: Vec<String>,
     /// What the file holds and the pattern does not, in words.
     left_out: Vec<String>,
     /// The distance to the sew line, as typed.
@@ -53,14 +57,21 @@ impl ToileApp {
             path: path.to_owned(),
             options: options.clone(),
         };
-        if self.execute(command) {
+        let is_read = self.execute(command);
+        self.notice.text = of_the_window(&self.notice.text);
+        if is_read {
             let found = self.file_read.take();
             let unit = self.base.pattern().unit;
             let inside = options.reading.allowance_inside;
             let inside = inside.map(|by| number::show(by, Want::Length, unit));
             self.foreign = found.filter(is_told).map(|found| ForeignFile {
                 path: path.to_owned(),
-                left_out: found.losses.iter().map(ToString::to_string).collect(),
+                guessed: found.guesses.iter().map(guess_in_words).collect(),
+                left_out: found
+                    .losses
+                    .iter()
+                    .map(|loss| of_the_window(&loss.to_string()))
+                    .collect(),
                 options,
                 found,
                 inside: inside.unwrap_or_default(),
@@ -149,13 +160,16 @@ impl ToileApp {
                     let title = foreign.found.format.title();
                     ui.label(RichText::new(format!("Read as {title}")).strong());
                     answer = foreign.questions(ui);
-                    let left_out = &foreign.left_out;
-                    if !left_out.is_empty() {
-                        ui.separator();
-                        let words = format!("Left out: {}", left_out.join("; "));
-                        let label = RichText::new(words).color(palette.warning);
-                        ui.add(egui::Label::new(label).truncate())
-                            .on_hover_text(left_out.join("\n"));
+                    for (lines, what) in [
+                        (&foreign.guessed, "guessed"),
+                        (&foreign.left_out, "left out"),
+                    ] {
+                        if !lines.is_empty() {
+                            ui.separator();
+                            let words = format!("{} {what}", lines.len());
+                            let words = RichText::new(words).color(palette.warning);
+                            ui.menu_button(words, |ui| told(ui, lines));
+                        }
                     }
                 });
             });
@@ -195,6 +209,48 @@ impl ToileApp {
     }
 }
 
+/// Shows lines, each whole.
+fn told(ui: &mut Ui, lines: &[String]) {
+    ui.set_width(LINES);
+    ScrollArea::vertical().show(ui, |ui| {
+        for line in lines {
+            ui.add(egui::Label::new(line).wrap());
+        }
+    });
+}
+
+/// A guess in words.
+fn guess_in_words(guess: &Guess) -> String {
+    let Guess {
+        what,
+        chosen,
+        because,
+        ..
+    } = guess;
+    of_the_window(&format!("{what}: {chosen}: {because}"))
+}
+
+/// Words with the names that the window has for options of the command line.
+fn of_the_window(words: &str) -> String {
+    let mut words = words.to_owned();
+    for &option in ReadOption::ALL {
+        let own = format!("\u{201c}{}\u{201d}", title(option));
+        words = words.replace(&format!("`{option}`"), &own);
+        words = words.replace(option.word(), &own);
+    }
+    words
+}
+
+/// The name of the widget that answers a question.
+fn title(option: ReadOption) -> &'static str {
+    match option {
+        ReadOption::Format => "Format",
+        ReadOption::Unit => "Unit of the file",
+        ReadOption::Inside => "Sew line inside by",
+        ReadOption::With => "Add a file\u{2026}",
+    }
+}
+
 /// Whether the user is told of what reading a file found out, and may want it otherwise.
 fn is_told(found: &FoundInFile) -> bool {
     let is_drawing = found.format.takes(ReadOption::Unit);
@@ -224,7 +280,7 @@ impl ForeignFile {
                     let formats = Format::all().iter().copied();
                     let chosen = list(
                         ui,
-                        "Format",
+                        title(option),
                         format.title(),
                         formats.map(|f| (f, f.title())),
                     );
@@ -240,11 +296,11 @@ impl ForeignFile {
                     let now = now.unwrap_or_else(|| "as stated".to_owned());
                     let units = DisplayUnit::all().iter().copied();
                     let units = units.map(|unit| (unit, unit.word()));
-                    let chosen = list(ui, "Unit of the file", &now, units);
+                    let chosen = list(ui, title(option), &now, units);
                     answer = chosen.map(Answered::Unit).or(answer);
                 }
                 ReadOption::Inside => {
-                    let label = ui.label("Sew line inside by").id;
+                    let label = ui.label(title(option)).id;
                     let id = egui::Id::unique("sew line inside by");
                     let field = ui.scope(|ui| {
                         ui.set_max_width(FIELD);
@@ -257,24 +313,10 @@ impl ForeignFile {
                     }
                 }
                 ReadOption::With => {
-                    if ui.button("Add a file that belongs to it\u{2026}").clicked() {
+                    if ui.button(title(option)).clicked() {
                         answer = Some(Answered::AsksFile);
                     }
                 }
-            }
-            if !guesses.is_empty() {
-                let reasons = guesses.iter().map(|guess| {
-                    let Guess {
-                        what,
-                        chosen,
-                        because,
-                        ..
-                    } = guess;
-                    format!("{what}: {chosen}: {because}")
-                });
-                let reasons = reasons.collect::<Vec<_>>().join("\n");
-                let told = ui.label(RichText::new("guessed").small().italics());
-                told.on_hover_text(reasons);
             }
         }
         answer

@@ -430,9 +430,7 @@ impl ToileApp {
 
     /// Whether text is typed into a field.
     pub(crate) fn types(&self, context: &egui::Context) -> bool {
-        let focused = context.memory(|memory| memory.focused());
-        let canvases = [PatternView::id(), MarkerView::id()];
-        context.egui_wants_keyboard_input() && !focused.is_some_and(|id| canvases.contains(&id))
+        context.text_edit_focused()
     }
 
     fn take_news(&mut self) {

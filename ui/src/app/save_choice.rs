@@ -7,7 +7,7 @@ use super::pick_file::{Picked, pick_file};
 use crate::theme::Palette;
 use egui::{ComboBox, RichText, Ui};
 use std::path::{Path, PathBuf};
-use toile_session::{Choice, Format, Project, WriteOptions};
+use toile_session::{Choice, Format, Loss, Project, WriteOptions};
 
 /// Largest number of kinds of contents whose loss is listed in the dialog; more are counted.
 const LISTED: usize = 6;
@@ -78,13 +78,21 @@ impl SaveChoice {
         let is_known = matches!(&self.lost, Some((of, _)) if of == options);
         if !is_known {
             let lost = project.lost_in(self.format, options);
-            let lost = lost.map(|lost| lost.iter().map(ToString::to_string).collect());
+            let lost = lost.map(|lost| lost.iter().map(in_words).collect());
             self.lost = Some((options.clone(), lost.map_err(|error| error.to_string())));
         }
         match &self.lost {
             Some((_, lost)) => lost,
             None => const { &Ok(Vec::new()) },
         }
+    }
+}
+
+/// A loss in words, with what writes the contents after all.
+fn in_words(loss: &Loss) -> String {
+    match loss.why == Loss::NOT_ASKED_FOR {
+        true => format!("{loss}: tick All sizes to write them"),
+        false => loss.to_string(),
     }
 }
 

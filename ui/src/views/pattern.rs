@@ -98,6 +98,8 @@ pub struct PatternView {
     told: Option<(Pos2, ToolModifiers)>,
     /// Whether another widget had the focus in the last frame.
     was_typed_into: bool,
+    /// Whether a tool was taken in hand that has not got the keys yet.
+    wants_keys: bool,
     wants_fit: bool,
     /// Part or area to scroll to.
     revealed: Option<revealed::Revealed>,
@@ -145,6 +147,7 @@ impl Default for PatternView {
             pressed: None,
             told: None,
             was_typed_into: false,
+            wants_keys: false,
             wants_fit: false,
             revealed: None,
             fitted: None,
@@ -182,6 +185,7 @@ impl PatternView {
     /// Takes a tool in hand.
     pub fn take(&mut self, tool: Tool) {
         self.tool = tool;
+        self.wants_keys = tool.takes_keys();
         self.state = tool.begin();
         self.pressed = None;
         self.guide = None;

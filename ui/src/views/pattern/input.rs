@@ -6,6 +6,7 @@ use crate::canvas::selection::Item;
 use crate::tools::number::begins_typing;
 use crate::tools::typing::{NAME_SIGN, WAY_SIGNS};
 use crate::tools::{Event, LineStep, Tool, ToolModifiers};
+use crate::views::marker::MarkerView;
 use egui::{CursorIcon, EventFilter, Key, PointerButton, Response, Ui};
 
 impl PatternView {
@@ -34,10 +35,14 @@ impl PatternView {
         with_space
     }
 
-    /// Whether another widget has the focus.
+    /// Whether the keys go to another widget: a text field or another view; without a tool that takes keys, also
+    /// a button or a list that has the focus.
     fn is_typed_into(&self, ui: &Ui) -> bool {
         let focused = ui.memory(|memory| memory.focused());
-        focused.is_some_and(|id| id != Self::id())
+        let Some(id) = focused.filter(|id| *id != Self::id()) else {
+            return false;
+        };
+        !self.tool.takes_keys() || id == MarkerView::id() || ui.ctx().text_edit_focused()
     }
 
     /// Input events since the last frame.
@@ -118,13 +123,17 @@ impl PatternView {
     }
 
     fn keys(&mut self, ui: &Ui, response: &Response) -> Vec<Event> {
+        if self.wants_keys && !self.is_covered {
+            self.wants_keys = false;
+            response.request_focus();
+        }
         // A key that ends typing into a field is not passed to the tool.
         let typed_now = self.is_typed_into(ui);
         let typed_before = std::mem::replace(&mut self.was_typed_into, typed_now);
         if typed_before {
             return Vec::new();
         }
-        if self.is_covered || self.is_typed_into(ui) {
+        if self.is_covered || typed_now {
             return Vec::new();
         }
         let takes_tab = self.tool.takes_keys();
