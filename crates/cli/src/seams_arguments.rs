@@ -14,10 +14,14 @@ pub struct Seams {
     /// Named size whose lengths are compared. Default: the size that the file keeps, else the base size.
     #[arg(long, value_name = "NAME", value_parser = one_size)]
     pub size: Option<String>,
-    /// Suggestions to sew: numbers of the list, as in 1,4; or best, those whose edges are each other's first choice
-    /// and likelier than all others together. No edge gets a second seam.
+    /// Suggestions to sew: numbers of the list, as in 1,4; or best, those that are certain: each edge is the other's first
+    /// choice and three times as likely as all else together, mirror images are sewn on a centre line alone, and no pieces
+    /// are closed to a bag. No edge gets a second seam.
     #[arg(long, value_name = "best|NUMBERS", value_parser = accepted, requires = "out")]
     pub accept: Option<AcceptedSeams>,
+    /// List all suggestions. Default: for each edge the first three.
+    #[arg(long)]
+    pub all: bool,
     /// File to write the pattern with its new seams to; its ending says the format.
     #[arg(long, value_name = "FILE", requires = "accept")]
     pub out: Option<PathBuf>,

@@ -3,8 +3,10 @@
 use crate::output::{Failure, Output, count};
 use crate::seams_arguments::Seams;
 use serde_json::{Value, json};
-use toile_session::{SeamOptions, Suggestion, suggested_seams};
+use toile_session::{PairOfEdges, SeamOptions, Suggestion, suggested_seams};
 
+/// Candidates of each edge that are listed.
+const MAX_LISTED: usize = 3;
 /// Most edges that are named when an edge stays open.
 const MAX_NAMED: usize = 12;
 
@@ -24,18 +26,32 @@ pub fn seams(seams: &Seams, output: &Output) -> Result<Value, Failure> {
     for note in &report.notes {
         output.say(format!("note: {note}"));
     }
-    match report.suggestions.is_empty() {
-        true => output.say("no seams to suggest: every edge is sewn, or has no partner"),
-        false => output.say("   no  cost  first  edges"),
-    }
-    for suggestion in &report.suggestions {
-        for line in lines(suggestion) {
+    let is_near = |pair: &PairOfEdges| pair.ranks.iter().any(|rank| *rank <= MAX_LISTED);
+    let found = report.suggestions.iter();
+    let listed = found.filter(|found| seams.all || found.pairs.iter().any(is_near));
+    let listed: Vec<&Suggestion> = listed.collect();
+    if report.suggestions.is_empty() {
+        output.say("no seams to suggest: every edge is sewn, or has no partner");
+    } else if options.accept.is_none() {
+        output.say("   no  cost  best   edges");
+        for line in listed.iter().flat_map(|found| lines(found)) {
             output.say(line);
+        }
+        match report.suggestions.len() - listed.len() {
+            0 => {}
+            more => output.say(format!(
+                "{more} less likely are not listed; --all lists them"
+            )),
         }
     }
     if options.accept.is_some() {
-        for (number, name) in report.seams.iter().enumerate() {
-            output.say(format!("sewn {}: {name}", number + 1));
+        let sewn = report.accepted.iter();
+        let sewn = sewn.flat_map(|number| &report.suggestions[number - 1].pairs);
+        for ((number, name), pair) in report.seams.iter().enumerate().zip(sewn) {
+            output.say(format!("sewn {}: {name}: {}", number + 1, in_words(pair)));
+        }
+        if report.seams.is_empty() && !report.suggestions.is_empty() {
+            output.say("nothing is sewn: no suggestion is certain; choose numbers from the list without --accept");
         }
         let named: Vec<String> = report
             .open
@@ -66,8 +82,6 @@ pub fn seams(seams: &Seams, output: &Output) -> Result<Value, Failure> {
 fn lines(suggestion: &Suggestion) -> Vec<String> {
     let mut lines = Vec::new();
     for (k, pair) in suggestion.pairs.iter().enumerate() {
-        let [one, two] = &pair.edges;
-        let [a, b] = pair.lengths_mm;
         let start = match k {
             0 => format!(
                 "{:>5}  {:>4.1}  {:<5}",
@@ -77,7 +91,14 @@ fn lines(suggestion: &Suggestion) -> Vec<String> {
             ),
             _ => format!("{:>5}  {:>4}  {:<5}", "", "", "and"),
         };
-        lines.push(format!("{start}  {one} ({a:.1} mm) to {two} ({b:.1} mm)"));
+        lines.push(format!("{start}  {}", in_words(pair)));
     }
     lines
+}
+
+/// Two edges with their panels and lengths.
+fn in_words(pair: &PairOfEdges) -> String {
+    let [one, two] = &pair.edges;
+    let [a, b] = pair.lengths_mm;
+    format!("{one} ({a:.1} mm) to {two} ({b:.1} mm)")
 }

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{toile, words};
+use common::{patterns, toile, words};
 use serde_json::Value;
 
 /// A table for several sizes, in mm, with its base size 50 of height 176 cm.
@@ -101,4 +101,37 @@ fn the_published_table_of_mens_sizes_makes_a_body_in_every_corner() {
             assert!(words(&output.stderr).contains("waist_to_hip_f of 3.7 cm"));
         }
     }
+}
+
+#[test]
+fn a_dxf_says_how_many_sizes_it_leaves_out_and_what_writes_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let shirt = patterns().join("t-shirt.toile.json");
+    let said = |more: &[&str]| {
+        let all = ["convert", shirt.to_str().unwrap(), "shirt.dxf"];
+        let all: Vec<&str> = all.iter().chain(more).copied().collect();
+        words(&toile(folder.path(), &all).stdout)
+    };
+    let one = said(&[]);
+    assert!(
+        one.contains("sizes (5)") && one.contains("; --all-sizes writes them"),
+        "{one}"
+    );
+    let all = said(&["--all-sizes"]);
+    assert!(
+        all.contains("sizes (6): written as shapes") && !all.contains("--all-sizes"),
+        "{all}"
+    );
+}
+
+#[test]
+fn a_text_of_no_format_is_refused_by_what_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("notes.txt"), "vm stat\n1 2\n").unwrap();
+    let output = toile(folder.path(), &["check", "notes.txt"]);
+    let said = words(&output.stderr);
+    assert!(
+        said.contains("of no format that is known here; patterns are read from"),
+        "{said}"
+    );
 }

@@ -69,6 +69,11 @@ fn seams_are_listed_accepted_and_written() {
         ],
     );
     let said = words(&said.stdout);
+    // What was sewn alone, by panels.
+    assert!(
+        said.contains(": front side (") && !said.contains("cost"),
+        "{said}"
+    );
     assert!(
         said.contains("left open") && said.contains("wrote b.toile.json"),
         "{said}"
@@ -97,4 +102,23 @@ fn wrong_numbers_and_names_are_refused() {
         assert!(said.contains(reason), "{arguments}: {said}");
     }
     assert!(!folder.path().join("a.toile.json").exists());
+}
+
+#[test]
+fn the_first_candidates_of_each_edge_are_listed_and_all_when_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    bare(folder.path());
+    let lines = |arguments: &[&str]| {
+        let said = toile(folder.path(), arguments);
+        assert!(said.status.success(), "{}", words(&said.stderr));
+        words(&said.stdout)
+    };
+    let few = lines(&["seams", "bare.toile.json"]);
+    let all = lines(&["seams", "bare.toile.json", "--all"]);
+    assert!(
+        few.contains("--all lists them") && !all.contains("--all"),
+        "{few}"
+    );
+    assert!(few.lines().count() < all.lines().count(), "{few}");
+    assert!(few.contains("front side ("), "{few}");
 }

@@ -22,7 +22,7 @@ use toile_pattern::{Draft, Evaluation, PartId, PieceId, Severity};
 /// Suggestions that are accepted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AcceptedSeams {
-    /// Those whose edges are each other's first choice, and likelier than everything else together.
+    /// Those that are certain enough to be sewn unseen.
     Best,
     /// Those with these numbers, from 1.
     Numbers(Vec<usize>),

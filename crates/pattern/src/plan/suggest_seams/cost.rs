@@ -24,7 +24,7 @@ const SHAPE_SCALE: f64 = 0.05;
 /// Cost of two edges that both bulge outwards, or both inwards (1).
 const SAME_BULGE: f64 = 0.6;
 /// Turning of an edge up to which it counts as straight (rad).
-const STRAIGHT: f64 = 15.0 * PI / 180.0;
+pub(super) const STRAIGHT: f64 = 15.0 * PI / 180.0;
 /// Turning beyond [`STRAIGHT`] from which [`SAME_BULGE`] counts whole (rad).
 const BENT: f64 = 30.0 * PI / 180.0;
 /// Cost of grains that point apart when the edges are sewn (1).
@@ -40,7 +40,7 @@ const SAME_PIECE: f64 = 1.5;
 /// Cost of edges of one piece that share a corner, unless they may be the legs of a dart (1).
 const SAME_CORNER: f64 = 1.5;
 /// Widest opening between two edges that may be the legs of a dart (rad).
-const MAX_DART: f64 = 45.0 * PI / 180.0;
+pub(super) const MAX_DART: f64 = 45.0 * PI / 180.0;
 /// Cost of an edge on the wearer's left with one on the right (1).
 const SIDES: f64 = 0.7;
 /// Cost of an edge with its own mirror image: seams along the middle are fewer than others (1).

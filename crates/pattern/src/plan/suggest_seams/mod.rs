@@ -7,10 +7,12 @@
 //! # Decided with
 //! - [`crate::plan::suggest_seams::cost`]: weights of what is known of two edges;
 //! - [`crate::plan::suggest_seams::agreement`]: how seams that meet at a corner support each other;
+//! - [`crate::plan::suggest_seams::certain`]: which are certain enough to be sewn unseen;
 //! - [`crate::plan::accept_seams`]: suggestions sewn.
 
 mod accept;
 mod agreement;
+mod certain;
 mod cost;
 mod edges;
 mod images;
@@ -25,6 +27,7 @@ pub use suggestion::{SeamSuggestions, SuggestedPair, SuggestedSeam};
 use crate::plan::impossible;
 use crate::{EditError, Evaluation};
 use agreement::Candidates;
+use certain::{FirstChoice, certain};
 use edges::SeamEdges;
 use sewn::sewn_partners;
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,7 +70,8 @@ pub fn suggest_seams(evaluation: &Evaluation) -> Result<SeamSuggestions, EditErr
     let candidates = candidates(&known, &partners);
     let (costs, likelihoods) = agreement::agreed(&edges.all, &candidates);
     let is_open = |edge: &usize| !partners.contains_key(edge);
-    let ranked = Ranked::new(costs, &likelihoods);
+    let mut ranked = Ranked::new(costs, &likelihoods);
+    ranked.certain = certain(&known, &ranked.first_choices(&partners));
     let mut suggestions = ranked.suggestions(&edges, &images, is_open);
     let open = (0..count).filter(is_open);
     suggestions.open = open.filter_map(|edge| edges.all[edge].sewn).collect();
@@ -114,6 +118,8 @@ fn candidates(known: &cost::Known<'_>, partners: &BTreeMap<usize, Vec<usize>>) -
 struct Ranked {
     /// For each edge, its candidates by rank: index, cost and likelihood (1).
     order: Vec<Vec<(usize, f64, f64)>>,
+    /// The pairs that may be sewn unseen.
+    certain: BTreeSet<[usize; 2]>,
 }
 
 impl Ranked {
@@ -126,7 +132,23 @@ impl Ranked {
         });
         Self {
             order: order.collect(),
+            certain: BTreeSet::new(),
         }
+    }
+
+    /// The pairs of edges that are each other's first choice.
+    fn first_choices(&self, partners: &BTreeMap<usize, Vec<usize>>) -> Vec<FirstChoice> {
+        let firsts = self.order.iter().enumerate();
+        let choices = firsts.filter_map(|(i, own)| {
+            let &(j, cost, likelihood) = own.first()?;
+            (i < j && self.rank(j, i) == Some(1)).then(|| FirstChoice {
+                edges: [i, j],
+                cost,
+                likelihood,
+                is_sewn: partners.contains_key(&i),
+            })
+        });
+        choices.collect()
     }
 
     fn rank(&self, i: usize, j: usize) -> Option<usize> {
@@ -146,6 +168,7 @@ impl Ranked {
             ranks,
             cost: cost + agreement::MAX_AGREEMENT + cost::MAX_GAIN,
             likelihood,
+            is_certain: self.certain.contains(&[i, j]),
         })
     }
 

@@ -16,6 +16,8 @@ pub struct SuggestedPair {
     pub cost: f64,
     /// Likelihood that the two edges are partners, among all candidates of both and staying unsewn (1).
     pub likelihood: f64,
+    /// Whether the edges are each other's first choice and may be sewn unseen.
+    pub is_certain: bool,
 }
 
 /// A seam that is suggested, together with the one on the other side of the wearer.
@@ -36,11 +38,6 @@ pub struct SeamSuggestions {
 }
 
 impl SuggestedPair {
-    /// Whether each edge is the first choice of the other.
-    pub fn is_mutual(&self) -> bool {
-        self.ranks == [1, 1]
-    }
-
     /// The edge that this one would be sewn to, and its rank among the partners of this one. `None`: the edge
     /// is not in the pair.
     pub fn partner(&self, edge: SewnEdge) -> Option<(SewnEdge, usize)> {
@@ -90,15 +87,16 @@ impl SeamSuggestions {
         found.map(|(_, partner, k)| (partner, k)).collect()
     }
 
-    /// Indices of the suggested seams to accept unseen: each edge is the first choice of the other, likelier
-    /// than everything else together, and in no seam before it.
+    /// Indices of the suggested seams to accept unseen: all their pairs are certain, and no edge is in a seam
+    /// before it.
     pub fn best(&self) -> Vec<usize> {
         let mut taken: Vec<SewnEdge> = Vec::new();
         let mut best = Vec::new();
         for (k, seam) in self.seams.iter().enumerate() {
-            let is_sure = |pair: &SuggestedPair| pair.is_mutual() && pair.likelihood > 0.5;
             let edges: Vec<SewnEdge> = seam.edges().flatten().collect();
-            if seam.pairs.iter().all(is_sure) && edges.iter().all(|edge| !taken.contains(edge)) {
+            if seam.pairs.iter().all(|pair| pair.is_certain)
+                && edges.iter().all(|edge| !taken.contains(edge))
+            {
                 taken.extend(edges);
                 best.push(k);
             }
