@@ -7,7 +7,7 @@
 //! # Decided with
 //! - [`crate::plan::suggest_seams::cost`]: weights of what is known of two edges;
 //! - [`crate::plan::suggest_seams::agreement`]: how seams that meet at a corner support each other;
-//! - [`crate::plan::suggest_seams::certain`]: which are certain enough to be sewn unseen;
+//! - [`mod@crate::plan::suggest_seams::certain`]: which are certain enough to be sewn unseen;
 //! - [`crate::plan::accept_seams`]: suggestions sewn.
 
 mod accept;
