@@ -14,7 +14,7 @@
 
 use crate::Part;
 use crate::bands::Near;
-use crate::cuts::CutPlane;
+use crate::cuts::{CutPlane, scale_place};
 use crate::definitions::{BodyMarks, KNEE, Taping};
 use crate::girths::{Girth, PerGirth};
 use crate::levels::{Level, Levels, upright};
@@ -248,11 +248,15 @@ impl<'a> TapedSkin<'a> {
         Some(closed_length(&self.hull(girth)))
     }
 
-    /// Girth round the trunk, if it is searched for, at the section that sets its scale (m): at its level
-    /// given by lengths, or at the nearest end of its range.
+    /// Girth that its definition finds, taped at the section that sets its scale (m): round the trunk at its
+    /// level given by lengths, or at the nearest end of its range; on neck and limbs at the template's mark.
     pub(crate) fn at_section(&self, girth: Girth) -> Option<f64> {
         let taping = self.taping(girth)?;
-        let y = self.levels.at(girth.level()?);
+        let Some(level) = girth.level() else {
+            let place = scale_place(girth, self.marks, self.warp)?;
+            return Some(self.taped(&taping, place));
+        };
+        let y = self.levels.at(level);
         let [low, high] = taping.range;
         if (low..=high).contains(&y) {
             return self.at_level(girth);
