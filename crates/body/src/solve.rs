@@ -419,6 +419,8 @@ const NECK_FORWARD: f64 = 0.05;
 fn beside(girth: Girth) -> [f64; 2] {
     match girth {
         Girth::Forearm => [0.9, 1.6],
+        // The foot decides where thick ankles are taped, and they where the calf is.
+        Girth::Calf | Girth::Ankle => [0.5, 2.0],
         _ if girth.level().is_some() => [0.7, 1.5],
         _ => [0.8, 1.6],
     }
