@@ -42,6 +42,23 @@ fn arm_middle(marks: &TemplateMarks, distance: f64) -> Vec3 {
     a + (b - a) * (place - before as f64).clamp(0.0, 1.0)
 }
 
+/// Position of the section of neck or limb that sets the scale of a girth, as [`Cut`] counts it (m).
+pub(crate) fn scale_place(girth: Girth, marks: &TemplateMarks, warp: &Warp) -> Option<f64> {
+    let on_arm = |distance: f64| warp.along_arm(warp.arm_plane(distance)[0]);
+    let on_leg = |y: f64| warp.apply(Vec3::y() * y, Follow::LEG).y;
+    Some(match girth {
+        Girth::Neck => 0.0,
+        Girth::UpperArm => on_arm(marks.arm.upper_arm),
+        Girth::Forearm => on_arm(marks.arm.forearm),
+        Girth::Wrist => on_arm(marks.arm.wrist),
+        Girth::LowerThigh => on_leg(marks.leg.lower_thigh),
+        Girth::Knee => on_leg(marks.leg.knee),
+        Girth::Calf => on_leg(marks.leg.calf),
+        Girth::Ankle => on_leg(marks.leg.ankle),
+        _ => return None,
+    })
+}
+
 impl CutPlane {
     /// The plane of a cut at the position `place` (m), a height or a distance along the arm as [`Cut`] says.
     pub(crate) fn of(cut: Cut, place: f64, marks: &TemplateMarks, warp: &Warp) -> Self {

@@ -128,6 +128,7 @@ impl Mannequin {
 
 #[cfg(test)]
 mod tests {
+    use crate::definitions::Taping;
     use crate::girths::Girth;
     use crate::measured::TapedSkin;
     use crate::tape::Skinned;
@@ -178,5 +179,32 @@ mod tests {
             let body = Mannequin::new(&table, figure).unwrap();
             assert_eq!(gaps(&body), [], "{figure:?} {height} {share}");
         }
+    }
+
+    #[test]
+    fn an_elbow_larger_than_the_forearm_leaves_no_thread_below_it() {
+        let mut asked = Measurements::new();
+        for (name, value) in [
+            ("upper_arm", 0.33),
+            ("elbow", 0.30),
+            ("forearm", 0.27),
+            ("wrist", 0.16),
+            ("arm_length", 0.61),
+            ("shoulder_to_elbow", 0.34),
+        ] {
+            asked.set(name, value, Origin::Asked).unwrap();
+        }
+        let body = Mannequin::new(&asked, Figure::Mean).unwrap();
+        let slices: Vec<f64> = body.with_tape(|tape| {
+            let taping = Taping::of(Girth::Forearm, tape.body()).unwrap();
+            let slice = |k: u32| tape.taped(&taping, taping.at(0.1 * f64::from(k)));
+            (0..=10).map(slice).collect()
+        });
+        // It tapers from the elbow's girth towards the wrist's.
+        let tapers = slices.windows(2).all(|w| w[1] < w[0] + 1e-3);
+        assert!(tapers && slices[5] > 0.2 && slices[10] > 0.16, "{slices:?}");
+        // A tape at the elbow's end finds more than is asked for, and that is said.
+        let said = body.conflicts().into_iter().flat_map(|c| c.names);
+        assert_eq!(said.collect::<Vec<_>>(), ["forearm"]);
     }
 }

@@ -14,7 +14,7 @@
 
 use crate::Part;
 use crate::bands::Near;
-use crate::cuts::CutPlane;
+use crate::cuts::{CutPlane, scale_place};
 use crate::definitions::{BodyMarks, KNEE, Taping};
 use crate::girths::{Girth, PerGirth};
 use crate::levels::{Level, Levels, upright};
@@ -81,9 +81,9 @@ impl Around {
 /// it, this level counts as the height of the hips.
 const LEVEL_SLACK: f64 = 0.01;
 
-/// Distance below their level given by lengths at which hips count as lying clearly below, as a share of
-/// stature: a centimetre.
-const BELOW: f64 = 0.006;
+/// Distance at which sections count as clearly apart, and hips as clearly below their level given by lengths,
+/// as a share of stature: a centimetre.
+const APART: f64 = 0.006;
 
 /// Halvings of a range in a bisection: to a billionth of it.
 const HALVINGS: usize = 30;
@@ -248,11 +248,16 @@ impl<'a> TapedSkin<'a> {
         Some(closed_length(&self.hull(girth)))
     }
 
-    /// Girth round the trunk, if it is searched for, at the section that sets its scale (m): at its level
-    /// given by lengths, or at the nearest end of its range.
+    /// A girth at the section that sets its scale (m): round the trunk at its level given by lengths, or at the
+    /// nearest end of its range; on neck and limbs at the template's mark, if the taped place lies clearly apart.
     pub(crate) fn at_section(&self, girth: Girth) -> Option<f64> {
         let taping = self.taping(girth)?;
-        let y = self.levels.at(girth.level()?);
+        let Some(level) = girth.level() else {
+            let place = scale_place(girth, self.marks, self.warp)?;
+            let apart = (place - self.place(girth)?).abs() > APART * self.body().stature;
+            return apart.then(|| self.taped(&taping, place));
+        };
+        let y = self.levels.at(level);
         let [low, high] = taping.range;
         if (low..=high).contains(&y) {
             return self.at_level(girth);
@@ -262,7 +267,7 @@ impl<'a> TapedSkin<'a> {
 
     /// Whether the largest hip girth lies clearly below the hips' level given by lengths.
     pub(crate) fn hips_lie_below(&self) -> bool {
-        let level = self.levels.at(Level::Hips) - BELOW * self.levels.at(Level::Crown);
+        let level = self.levels.at(Level::Hips) - APART * self.levels.at(Level::Crown);
         self.place(Girth::Hips).is_some_and(|place| place < level)
     }
 

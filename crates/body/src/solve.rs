@@ -125,12 +125,16 @@ impl SolveInput<'_> {
             if let Some(asked) = q.girth(girth) {
                 let got = taken.girth(girth);
                 miss = miss.max((asked - got).abs());
+                let factor = ratio(asked, got);
                 scales.girth[girth] *= match taken.at_section(girth) {
                     Some(there) => {
-                        let [low, high] = BESIDE.map(|share| share * asked / there);
-                        ratio(asked, got).clamp(low.min(1.0), high.max(1.0))
+                        let [low, high] = beside(girth).map(|share| ratio(share * asked, there));
+                        match girth.level() {
+                            Some(_) => factor.clamp(low.min(1.0), high.max(1.0)),
+                            None => factor.clamp(low, high),
+                        }
                     }
-                    None => ratio(asked, got),
+                    None => factor,
                 };
             }
         }
@@ -410,8 +414,17 @@ const ASYMMETRY: [f64; 2] = [-0.25, 0.25];
 /// Largest distance of a neck from the template's position, as a share of stature.
 const NECK_FORWARD: f64 = 0.05;
 
-/// Range of a trunk girth at the section that sets its scale, divided by the girth where it is taped (1).
-const BESIDE: [f64; 2] = [0.7, 1.5];
+/// Range of a girth at the section that sets its scale, divided by the girth where it is taped (1). Where a
+/// neighbour decides the taped girth, as an elbow does at the end of a forearm, no scale reaches it.
+fn beside(girth: Girth) -> [f64; 2] {
+    match girth {
+        Girth::Forearm => [0.9, 1.6],
+        // The foot decides where thick ankles are taped, and they where the calf is.
+        Girth::Calf | Girth::Ankle => [0.5, 2.0],
+        _ if girth.level().is_some() => [0.7, 1.5],
+        _ => [0.8, 1.6],
+    }
+}
 
 /// Range of the trunk's scale at the crotch divided by the scale at the hips (1).
 const CROTCH_TO_HIPS: [f64; 2] = [0.85, 1.0];
