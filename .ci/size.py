@@ -13,7 +13,7 @@ import re
 import sys
 
 # Lines of all crates together. Formats of other programs make it larger; all else makes it smaller.
-MAX_TOTAL = 178_500
+MAX_TOTAL = 178_900
 MAX_FILE = 600
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent

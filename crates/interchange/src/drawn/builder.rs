@@ -4,9 +4,11 @@
 //! through them. Corners grade by rules, points between them with their corners ([`crate::drawn::graded`]). Edges
 //! of the sew line get the allowance that their distance to the cut line shows.
 
-use super::corners::{corners, is_straight, lies_along};
-use super::cubics::{Cubics, cubics};
-use super::cut_fit::{CutFit, cut_fit, edges_of, ring_of};
+use super::corners::lies_along;
+use super::cubics::Cubics;
+use super::curved::Curved;
+use super::cut_fit::{CutFit, edges_of, ring_of};
+use super::cut_tangents::{DrawnCut, turn_ends};
 use super::drill::{DRILL_LENGTH, DRILL_NAME};
 use super::graded::{Frame, Rules, SizedPlaces};
 use super::holes::sound_holes;
@@ -99,12 +101,6 @@ struct Numbers {
     edges: usize,
 }
 
-/// Corners of a line, and the cubics of each edge that is no straight line.
-struct Curved {
-    corners: Vec<usize>,
-    curves: Vec<Option<Cubics>>,
-}
-
 /// A line of a panel as built: its edges, and for each vertex of the drawn line the point made of it.
 struct Built {
     edges: Vec<Edge>,
@@ -152,7 +148,11 @@ impl Builder {
         let mut fold = self.fold(&name, piece, &mut outline);
         let mut curved = self.smooth(&name, &mut outline, fold);
         let mut inside = piece.inside.clone();
-        let mut fit = self.cut_fit(piece, &outline, &curved);
+        let cut = DrawnCut::of(piece, self.base, self.sizes.len().max(1));
+        let mut fit = cut.as_ref().map(|cut| cut.fit(&outline, &curved));
+        if let (Some(cut), Some(fit)) = (&cut, &mut fit) {
+            turn_ends(&outline, cut, (&mut curved, fit));
+        }
         if let (Some(cut), true) = (
             &piece.cut_outline,
             fit.as_ref().is_some_and(is_no_allowance),
@@ -269,17 +269,7 @@ impl Builder {
 
     /// Corners and curves of a line; `fold` are the vertices at the ends of a straight edge of it.
     fn curved(&self, line: &DrawnLine, fold: Option<[usize; 2]>) -> Curved {
-        let corners = corners(line, fold.as_ref().map_or(&[], |ends| ends));
-        let count = line.len();
-        let edges = corners.len() - usize::from(!line.is_closed);
-        let curve = |c: usize| {
-            let [from, next] = [corners[c], corners[(c + 1) % corners.len()]];
-            let to = if next > from { next } else { next + count };
-            let is_fold = fold == Some([from, next]);
-            (!is_fold).then(|| self.curve(line, (from, to))).flatten()
-        };
-        let curves = (0..edges).map(curve).collect();
-        Curved { corners, curves }
+        Curved::new(line, fold, self.sizes.len().max(1))
     }
 
     /// Corners and curves of an outline. Where smooth curves would cross each other in some size, and its chords do not,
@@ -360,18 +350,6 @@ impl Builder {
             points,
             corners,
         }
-    }
-
-    /// The cubics through the vertices from one corner to the next; `None` if they lie on a straight line.
-    fn curve(&self, line: &DrawnLine, (from, to): (usize, usize)) -> Option<Cubics> {
-        let sizes = self.sizes.len().max(1);
-        let is_cubic = |k: usize| matches!(line.span(k % line.len()), Span::Cubic(_));
-        let is_line = !(from..to).any(is_cubic)
-            && (0..sizes).all(|size| {
-                let (stretch, _) = line.stretch(size, (from, to));
-                is_straight(&stretch)
-            });
-        (!is_line).then(|| cubics(line, (from, to), sizes))
     }
 
     /// The rule of a curve of cubics; `vertex` gives the points of its vertices by their numbers from its start.
@@ -462,18 +440,6 @@ impl Builder {
             self.lost(name, "the fold line", why);
         }
         ends.map(|ends| without_vertices_between(outline, ends))
-    }
-
-    /// Allowances and corners by which the cut line of a piece follows from its outline.
-    fn cut_fit(&self, piece: &DrawnPiece, outline: &DrawnLine, curved: &Curved) -> Option<CutFit> {
-        let drawn = piece.cut_line.as_ref()?;
-        let edges = edges_of(outline, (&curved.corners, &curved.curves), self.base);
-        // The cut line curves between its vertices, as the sew line does.
-        let dense = piece.cut_outline.as_ref().map(|cut| {
-            let curved = self.curved(cut, None);
-            ring_of(&edges_of(cut, (&curved.corners, &curved.curves), self.base))
-        });
-        Some(cut_fit(&edges, (drawn, dense.as_deref().unwrap_or(drawn))))
     }
 
     /// Sets the allowances and corners of the edges of an outline.

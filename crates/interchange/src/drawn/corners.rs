@@ -5,6 +5,12 @@ use toile_geometry::Vec2;
 
 /// Least turn of a line that is a corner, where the file marks none (rad): 10 degrees.
 const MIN_KINK: f64 = 10.0 / 180.0 * std::f64::consts::PI;
+/// Turn from which a vertex is no vertex of a curve, however coarse (rad): 30 degrees.
+const MIN_SURE_KINK: f64 = 30.0 / 180.0 * std::f64::consts::PI;
+/// Share of the turn of a vertex of a coarse curve that its neighbours turn by at least (1).
+const MIN_ALIKE: f64 = 0.6;
+/// Chords beside a vertex whose lengths differ by this factor or more are not of one curve (1).
+const UNLIKE_CHORDS: f64 = 4.0;
 /// Least distance at which a point of a curve tells the direction at a vertex (m).
 const MIN_WAY: f64 = 5e-4;
 /// Largest distance of a vertex from a straight line that still lies on it (m).
@@ -24,7 +30,7 @@ pub(crate) fn corners(line: &DrawnLine, further: &[usize]) -> Vec<usize> {
             || is_turn(line, k)
             || match marked {
                 true => line.is_corner.get(k) == Some(&true),
-                false => is_chord(k) && is_kink(),
+                false => is_chord(k) && (is_kink() || ends_curve(line, k)),
             }
     };
     let mut found: Vec<usize> = (0..count).filter(|&k| is_corner(k)).collect();
@@ -62,12 +68,18 @@ fn is_turn(line: &DrawnLine, k: usize) -> bool {
     }
 }
 
-/// Whether a line turns by more than 10 degrees at a vertex in a size.
+/// Whether a line has a corner at a vertex in a size: it turns by more than 10 degrees, and not as its neighbours do.
 pub(crate) fn is_kink(line: &DrawnLine, size: usize, k: usize) -> bool {
+    let turn = turn(line, size, k);
+    turn.abs() > MIN_KINK && !is_of_coarse_curve(line, size, k, turn)
+}
+
+/// The angle by which a line turns to the left at a vertex in a size (rad); 0 at the ends of an open line.
+fn turn(line: &DrawnLine, size: usize, k: usize) -> f64 {
     let points = line.in_size(size);
     let n = points.len();
     if !line.is_closed && (k == 0 || k + 1 == n) {
-        return false;
+        return 0.0;
     }
     let before = (k + n - 1) % n;
     // Points of the curve say better than vertices which way it runs; very near ones do not, as they are rounded.
@@ -77,8 +89,49 @@ pub(crate) fn is_kink(line: &DrawnLine, size: usize, k: usize) -> bool {
     let from = from.copied().unwrap_or(points[before]);
     let to = to.copied().unwrap_or(points[(k + 1) % n]);
     let (a, b) = (points[k] - from, to - points[k]);
-    let turn = a.perp(&b).atan2(a.dot(&b)).abs();
-    a.norm() > 0.0 && b.norm() > 0.0 && turn > MIN_KINK
+    a.perp(&b).atan2(a.dot(&b))
+}
+
+/// Whether a vertex at which a line turns is one of a curve of few vertices: its neighbours turn alike, but for one at
+/// which the curve ends, in a corner beyond doubt or in a straight line.
+fn is_of_coarse_curve(line: &DrawnLine, size: usize, k: usize, own: f64) -> bool {
+    let count = line.len();
+    if own.abs() > MIN_SURE_KINK || has_unlike_chords(line, size, k) {
+        return false;
+    }
+    let neighbours = [count - 1, 1].map(|step| {
+        let k = (k + step) % count;
+        let turn = turn(line, size, k);
+        let is_end = turn.abs() > MIN_SURE_KINK || has_unlike_chords(line, size, k);
+        (is_end, turn * own.signum() >= MIN_ALIKE * own.abs())
+    });
+    neighbours
+        .iter()
+        .all(|(is_end, is_alike)| *is_end || *is_alike)
+        && neighbours
+            .iter()
+            .any(|(is_end, is_alike)| !is_end && *is_alike)
+}
+
+/// Whether the chords beside a vertex are too unlike in length for one curve, and the file has no points of them.
+fn has_unlike_chords(line: &DrawnLine, size: usize, k: usize) -> bool {
+    let points = line.in_size(size);
+    let count = points.len();
+    if !line.is_closed && (k == 0 || k + 1 == count) {
+        return false;
+    }
+    let before = (k + count - 1) % count;
+    let [a, b] = [before, k].map(|k| (points[(k + 1) % count] - points[k]).norm());
+    let has_points = [before, k]
+        .iter()
+        .any(|&k| !line.between_in(size, k).is_empty());
+    !has_points && a.max(b) >= UNLIKE_CHORDS * a.min(b)
+}
+
+/// Whether a curve and a straight line that goes on from it without a kink meet at a vertex: one chord is much longer
+/// than the other, in every size.
+fn ends_curve(line: &DrawnLine, k: usize) -> bool {
+    (0..line.by_size.len()).all(|size| has_unlike_chords(line, size, k))
 }
 
 /// Whether all points lie on the straight line from the first to the last.
@@ -136,5 +189,32 @@ mod tests {
     fn straightness_is_a_hundredth_of_a_millimetre() {
         let bent = |by: f64| [Vec2::zeros(), Vec2::new(0.5, by), Vec2::new(1.0, 0.0)];
         assert!(is_straight(&bent(9e-6)) && !is_straight(&bent(2e-5)));
+    }
+
+    #[test]
+    fn vertices_of_a_coarse_curve_are_no_corners_but_those_beside_straight_lines_are() {
+        // A quarter of a circle that turns by 15 degrees at each vertex, between straight lines; the first goes on from it
+        // without a kink, the other ends in one of 20 degrees.
+        let at = |k: i32| {
+            let turn = f64::from(k) * 15.0_f64.to_radians();
+            Vec2::new(0.1 * turn.sin(), 0.1 - 0.1 * turn.cos())
+        };
+        let mut points = vec![Vec2::new(-0.2, 0.0)];
+        points.extend((0..=6).map(at));
+        points.push(Vec2::new(0.0, 0.3));
+        let line = DrawnLine::one(points, true);
+        let found = corners(&line, &[]);
+        assert_eq!(found, [0, 1, 7, 8]);
+        // A row of bends of 15 degrees at long chords alone is no curve.
+        let bent = [
+            [0.0, 0.0],
+            [0.5, 0.0],
+            [0.52, 0.005],
+            [1.0, 0.27],
+            [1.0, 0.8],
+            [0.0, 0.8],
+        ];
+        let line = DrawnLine::one(bent.map(Vec2::from).to_vec(), true);
+        assert_eq!(corners(&line, &[]), [0, 1, 2, 3, 4, 5]);
     }
 }

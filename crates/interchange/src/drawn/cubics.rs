@@ -4,7 +4,7 @@
 use super::corners::lies_along;
 use super::fit::{along, chord_handles, free};
 use super::piece::{DrawnLine, Span};
-use super::spline::{handles, slopes_of};
+use super::spline::{Tangents, handles, slopes_of};
 use toile_geometry::{Curve, Vec2};
 
 /// Largest distance of a cubic from the points that it is fitted to (m).
@@ -71,7 +71,12 @@ impl Cubics {
 }
 
 /// The curve from one vertex to another in some number of sizes; `to` may lie beyond the last vertex of a closed line.
-pub(crate) fn cubics(line: &DrawnLine, (from, to): (usize, usize), sizes: usize) -> Cubics {
+/// `ends` are the known tangents of its ends in each size: a curve of vertices alone has them.
+pub(crate) fn cubics(
+    line: &DrawnLine,
+    (from, to): (usize, usize),
+    (sizes, ends): (usize, &[Tangents]),
+) -> Cubics {
     if let Some(given) = given(line, (from, to)) {
         return given;
     }
@@ -88,9 +93,10 @@ pub(crate) fn cubics(line: &DrawnLine, (from, to): (usize, usize), sizes: usize)
         .iter()
         .any(|dense| dense.points.len() == dense.vertices.len())
     {
-        for (dense, own) in dense.iter().zip(&mut found.by_size) {
+        for (size, (dense, own)) in dense.iter().zip(&mut found.by_size).enumerate() {
             let vertices: Vec<Vec2> = dense.vertices.iter().map(|&k| dense.points[k]).collect();
-            let (handles, overshoots) = handles(&vertices);
+            let ends = ends.get(size).copied().unwrap_or_default();
+            let (handles, overshoots) = handles(&vertices, ends);
             found.has_chords |= overshoots;
             let ends = vertices.iter().skip(1);
             own.extend(
@@ -268,7 +274,7 @@ mod tests {
     #[test]
     fn cubics_lie_on_the_points_of_the_curve() {
         let line = quarter();
-        let found = cubics(&line, (0, 2), 2);
+        let found = cubics(&line, (0, 2), (2, &[]));
         assert!(!found.has_chords);
         assert_eq!(found.ends_at_vertex.iter().filter(|is| **is).count(), 2);
         for (size, height) in [0.2, 0.35].into_iter().enumerate() {
@@ -303,7 +309,7 @@ mod tests {
     fn without_points_between_in_every_size_it_is_the_spline_through_the_vertices() {
         let mut line = quarter();
         line.between[1].iter_mut().for_each(Vec::clear);
-        let found = cubics(&line, (0, 2), 2);
+        let found = cubics(&line, (0, 2), (2, &[]));
         assert_eq!(found.ends_at_vertex, [true, true]);
         assert_eq!(found.by_size[0].len(), 2);
     }

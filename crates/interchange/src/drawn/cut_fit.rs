@@ -1,6 +1,7 @@
 //! Seam allowances and corners by which the cut line that a file draws follows from its sew line.
 
 use super::allowance::{Width, distance, width};
+use super::corners::is_kink;
 use super::cubics::Cubics;
 use super::piece::DrawnLine;
 use toile_cut::{Corner as CutCorner, MITRE_LIMIT, SeamEdge, SeamLine, cut_line};
@@ -11,8 +12,8 @@ use toile_pattern::{Corner, EdgeCorner, MitreLimit};
 const CHORDS: usize = 12;
 /// Largest distance between a cut line as drawn and as made that counts as none (m).
 const SAME: f64 = 1e-4;
-/// Distance of a corner of the cut line from the one as drawn above which other shapes are tried (m).
-const TRY_OTHERS: f64 = 5e-5;
+/// Distance of a corner of the cut line from the one as drawn above which other shapes and tangents are tried (m).
+pub(crate) const TRY_OTHERS: f64 = 5e-5;
 /// Longest way from a corner of the sew line to what of the cut line belongs to it, over the wider allowance (1).
 const REACH: f64 = 4.0;
 
@@ -34,6 +35,9 @@ pub(crate) struct CutFit {
     pub uneven: usize,
     /// Number of corners at which the cut line as drawn turns otherwise.
     pub other_corners: usize,
+    /// For each corner the largest distance of a vertex of the cut line as drawn, near it, from the one that is made, and of
+    /// a corner of the latter from the former (m).
+    pub vertex_offs: Vec<f64>,
     /// Share of the vertices of the cut line as drawn that lie elsewhere than on the one that is made (1).
     pub off_share: f64,
 }
@@ -101,9 +105,16 @@ pub(crate) fn cut_fit(edges: &[Vec<Curve>], (vertices, dense): (&[Vec2], &[Vec2]
         Width::Uneven { .. } => None,
     });
     fit.usual = longest(&even.collect::<Vec<(f64, f64)>>());
-    for (found, _) in found {
+    for ((found, _), edge) in found.into_iter().zip(edges) {
+        // Curves of few vertices run apart between them, though the vertices themselves are at an even distance.
+        let mut vertices = edge
+            .iter()
+            .skip(1)
+            .map(|curve| distance(curve.start(), dense));
+        let is_usual = edge.len() > 1 && vertices.all(|off| (off - fit.usual).abs() <= SAME);
         fit.widths.push(match found {
             Width::Even(width) => rounded(width),
+            Width::Uneven { .. } if is_usual => fit.usual,
             Width::Uneven { mean, spread } => {
                 fit.uneven += 1;
                 // The legs of a dart that is drawn lie at no distance of their own from the cut line.
@@ -139,12 +150,16 @@ pub(crate) fn cut_fit(edges: &[Vec<Curve>], (vertices, dense): (&[Vec2], &[Vec2]
             }
         }
         made = fit.made(edges).unwrap_or(made);
-        let offs = fit.corner_offs(edges, (vertices, dense), &made);
-        fit.other_corners = offs.iter().filter(|off| **off > SAME).count();
     }
-    let off = vertices.iter().filter(|p| distance(**p, &made) > SAME);
-    fit.off_share = off.count() as f64 / vertices.len().max(1) as f64;
+    fit.compare(edges, (vertices, dense), &made);
     fit
+}
+
+/// The points of a closed line at which it turns by more than 10 degrees.
+fn kinks(ring: &[Vec2]) -> Vec<Vec2> {
+    let line = DrawnLine::one(ring.to_vec(), true);
+    let kinks = (0..ring.len()).filter(|&k| is_kink(&line, 0, k));
+    kinks.map(|k| ring[k]).collect()
 }
 
 /// Corners besides the usual one.
@@ -164,6 +179,33 @@ fn others() -> [EdgeCorner; 5] {
 }
 
 impl CutFit {
+    /// The allowances and corners with other edges at the same sew line: how far the cut lines are apart then.
+    #[must_use]
+    pub fn again(mut self, edges: &[Vec<Curve>], drawn: (&[Vec2], &[Vec2])) -> Self {
+        match self.made(edges) {
+            Some(made) => self.compare(edges, drawn, &made),
+            None => self.vertex_offs.fill(f64::INFINITY),
+        }
+        self
+    }
+
+    /// Compares the cut line as drawn, by its vertices and by dense points, with the one that is made.
+    fn compare(
+        &mut self,
+        edges: &[Vec<Curve>],
+        (vertices, dense): (&[Vec2], &[Vec2]),
+        made: &[Vec2],
+    ) {
+        let offs = self.corner_offs(edges, (vertices, dense), made);
+        self.other_corners = offs.iter().filter(|off| **off > SAME).count();
+        self.vertex_offs = self.offs_near(edges, vertices, made);
+        let back = self.offs_near(edges, &kinks(made), dense);
+        let both = self.vertex_offs.iter_mut().zip(back);
+        both.for_each(|(off, back)| *off = off.max(back));
+        let off = vertices.iter().filter(|p| distance(**p, made) > SAME);
+        self.off_share = off.count() as f64 / vertices.len().max(1) as f64;
+    }
+
     /// The cut line that follows from the sew line; `None` if none does.
     fn made(&self, edges: &[Vec<Curve>]) -> Option<Vec<Vec2>> {
         let mut outline = Vec::new();
@@ -205,23 +247,30 @@ impl CutFit {
         (vertices, dense): (&[Vec2], &[Vec2]),
         made: &[Vec2],
     ) -> Vec<f64> {
+        let drawn = self.offs_near(edges, vertices, made);
+        let back = self.offs_near(edges, made, dense);
+        drawn.iter().zip(back).map(|(a, b)| a.max(b)).collect()
+    }
+
+    /// For each corner the largest distance of the points of a line near it from another line (m).
+    fn offs_near(&self, edges: &[Vec<Curve>], line: &[Vec2], other: &[Vec2]) -> Vec<f64> {
         let count = edges.len();
         let starts: Vec<Vec2> = edges.iter().map(|edge| edge[0].start()).collect();
         let mut offs = vec![0.0_f64; count];
-        let mut add = |p: Vec2, other: &[Vec2]| {
+        for &p in line {
             let off = |c: &usize| (starts[*c] - p).norm();
             let nearest = (0..count).min_by(|a, b| off(a).total_cmp(&off(b)));
-            let Some(c) = nearest else {
-                return;
-            };
-            let wider = self.widths[c].max(self.widths[(c + count - 1) % count]);
-            if off(&c) <= REACH * wider {
+            if let Some(c) = nearest.filter(|c| off(c) <= self.reach(*c)) {
                 offs[c] = offs[c].max(distance(p, other));
             }
-        };
-        vertices.iter().for_each(|&p| add(p, made));
-        made.iter().for_each(|&p| add(p, dense));
+        }
         offs
+    }
+
+    /// Largest distance from a corner of the sew line to what of the cut line belongs to it (m).
+    pub fn reach(&self, corner: usize) -> f64 {
+        let before = (corner + self.widths.len() - 1) % self.widths.len();
+        REACH * self.widths[corner].max(self.widths[before])
     }
 }
 

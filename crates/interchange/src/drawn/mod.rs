@@ -7,6 +7,8 @@
 //! - [`crate::drawn::unit`]: unit, by the sizes of pieces;
 //! - [`crate::drawn::corners`], [`crate::drawn::cubics`], [`crate::drawn::fit`], [`crate::drawn::spline`]: corners of a
 //!   line, and curves between them;
+//! - [`crate::drawn::curved`], [`crate::drawn::cut_tangents`]: a line as corners and curves, whose ends the corners of the
+//!   cut line may turn;
 //! - [`crate::drawn::twin`]: points of curves that the file has between the vertices;
 //! - [`crate::drawn::allowance`], [`crate::drawn::cut_fit`]: seam allowances and corners, from the distance of two lines;
 //! - [`crate::drawn::holes`]: cut-outs within an outline;
@@ -20,7 +22,9 @@ pub(crate) mod builder;
 pub(crate) mod chain;
 pub(crate) mod corners;
 pub(crate) mod cubics;
+pub(crate) mod curved;
 pub(crate) mod cut_fit;
+pub(crate) mod cut_tangents;
 pub(crate) mod drill;
 pub(crate) mod fit;
 pub(crate) mod graded;

@@ -4,14 +4,23 @@
 
 use toile_geometry::Vec2;
 
+/// Directions of a curve at its start and at its end, of length 1, where they are known.
+pub(crate) type Tangents = [Option<Vec2>; 2];
+
 /// Derivatives at points by the arc length of the chords (1), of the cubic spline through them. Two
 /// points give the direction of their chord.
 pub(crate) fn slopes_of(points: &[Vec2]) -> Vec<Vec2> {
+    slopes_between(points, Tangents::default())
+}
+
+/// As [`slopes_of`], with the known tangents of the ends.
+fn slopes_between(points: &[Vec2], ends: Tangents) -> Vec<Vec2> {
     let n = points.len();
     let chords: Vec<Vec2> = points.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if n <= 2 {
         let chord = chords.first().copied().unwrap_or_default();
-        return vec![chord / chord.norm().max(f64::MIN_POSITIVE); n];
+        let chord = chord / chord.norm().max(f64::MIN_POSITIVE);
+        return (0..n).map(|k| ends[k].unwrap_or(chord)).collect();
     }
     let h: Vec<f64> = chords
         .iter()
@@ -33,6 +42,12 @@ pub(crate) fn slopes_of(points: &[Vec2]) -> Vec<Vec2> {
     }
     lower[n - 1] = 1.0;
     right[n - 1] = chords[n - 2] * (2.0 / h[n - 2]);
+    if let Some(tangent) = ends[0] {
+        (upper[0], right[0]) = (0.0, tangent);
+    }
+    if let Some(tangent) = ends[1] {
+        (lower[n - 1], right[n - 1]) = (0.0, tangent);
+    }
     for k in 1..n {
         let factor = lower[k] / diagonal[k - 1];
         diagonal[k] -= factor * upper[k - 1];
@@ -49,11 +64,11 @@ pub(crate) fn slopes_of(points: &[Vec2]) -> Vec<Vec2> {
     right
 }
 
-/// Handles of the cubics between points: of each cubic the handle after its start and that before its end. A
-/// spline that turns back against one of its chords overshoots; its handles are then those of straight chords,
+/// Handles of the cubics between points, with the known tangents of the ends: of each cubic the handle after its start
+/// and that before its end. A spline that turns back against one of its chords overshoots; its handles are then those of straight chords,
 /// and the flag is `true`.
-pub(crate) fn handles(points: &[Vec2]) -> (Vec<[Vec2; 2]>, bool) {
-    let slopes = slopes_of(points);
+pub(crate) fn handles(points: &[Vec2], ends: Tangents) -> (Vec<[Vec2; 2]>, bool) {
+    let slopes = slopes_between(points, ends);
     let pairs = || points.windows(2).zip(slopes.windows(2));
     let overshoots = pairs().any(|(ends, slopes)| {
         let chord = ends[1] - ends[0];
@@ -88,7 +103,7 @@ mod tests {
     fn a_spline_is_nearer_to_an_arc_than_its_chords_by_far() {
         let arc = |t: f64| Vec2::new(t.cos(), t.sin());
         let points: Vec<Vec2> = (0..=6).map(|k| arc(0.25 * f64::from(k))).collect();
-        let (handles, overshoots) = handles(&points);
+        let (handles, overshoots) = handles(&points, Tangents::default());
         assert!(!overshoots);
         let error = |k: usize| {
             let curve = Curve::Cubic {
@@ -110,7 +125,7 @@ mod tests {
     #[test]
     fn handles_of_a_spline_that_turns_back_are_those_of_chords() {
         let points = [[0.0, 0.0], [1.0, 0.0], [0.4, 0.0], [1.5, 0.0]].map(Vec2::from);
-        let (handles, overshoots) = handles(&points);
+        let (handles, overshoots) = handles(&points, Tangents::default());
         assert!(overshoots);
         assert!((handles[0][0] - Vec2::new(1.0 / 3.0, 0.0)).norm() < 1e-12);
     }
@@ -119,8 +134,12 @@ mod tests {
     fn few_points_are_no_fault() {
         assert!(slopes_of(&[]).is_empty());
         assert_eq!(slopes_of(&[Vec2::zeros()]), [Vec2::zeros()]);
-        assert!(handles(&[Vec2::zeros()]).0.is_empty());
+        assert!(handles(&[Vec2::zeros()], Tangents::default()).0.is_empty());
         let twice = [Vec2::zeros(), Vec2::zeros()];
-        assert!(handles(&twice).0[0].iter().all(|p| p.norm() == 0.0));
+        assert!(
+            handles(&twice, Tangents::default()).0[0]
+                .iter()
+                .all(|p| p.norm() == 0.0)
+        );
     }
 }
