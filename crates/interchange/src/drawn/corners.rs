@@ -11,6 +11,8 @@ const MIN_SURE_KINK: f64 = 30.0 / 180.0 * std::f64::consts::PI;
 const MIN_ALIKE: f64 = 0.6;
 /// Chords beside a vertex whose lengths differ by this factor or more are not of one curve (1).
 const UNLIKE_CHORDS: f64 = 4.0;
+/// Least turn at a vertex of a curve, between chords of one straight line (rad): coordinates are rounded.
+const MIN_BEND: f64 = 5e-3;
 /// Least distance at which a point of a curve tells the direction at a vertex (m).
 const MIN_WAY: f64 = 5e-4;
 /// Largest distance of a vertex from a straight line that still lies on it (m).
@@ -128,10 +130,24 @@ fn has_unlike_chords(line: &DrawnLine, size: usize, k: usize) -> bool {
     !has_points && a.max(b) >= UNLIKE_CHORDS * a.min(b)
 }
 
-/// Whether a curve and a straight line that goes on from it without a kink meet at a vertex: one chord is much longer
-/// than the other, in every size.
+/// Whether a curve and a straight line that goes on from it without a kink meet at a vertex: in every size one chord is
+/// much longer than the other, at whose other end the line turns on.
 fn ends_curve(line: &DrawnLine, k: usize) -> bool {
-    (0..line.by_size.len()).all(|size| has_unlike_chords(line, size, k))
+    let count = line.len();
+    let ends = |size: usize| {
+        let points = line.in_size(size);
+        let [before, after] = [(k + count - 1) % count, (k + 1) % count];
+        let length = |end: usize| (points[end] - points[k]).norm();
+        let other = if length(before) < length(after) {
+            before
+        } else {
+            after
+        };
+        has_unlike_chords(line, size, k)
+            && turn(line, size, other).abs() > MIN_BEND
+            && !is_kink(line, size, other)
+    };
+    (0..line.by_size.len()).all(ends)
 }
 
 /// Whether all points lie on the straight line from the first to the last.
@@ -205,6 +221,17 @@ mod tests {
         let line = DrawnLine::one(points, true);
         let found = corners(&line, &[]);
         assert_eq!(found, [0, 1, 7, 8]);
+        // Vertices of a straight line are no corners, however long its chords.
+        let split = [
+            [0.0, 0.0],
+            [0.9, 0.0],
+            [0.95, 0.0],
+            [1.0, 0.0],
+            [1.0, 0.8],
+            [0.0, 0.8],
+        ];
+        let line = DrawnLine::one(split.map(Vec2::from).to_vec(), true);
+        assert_eq!(corners(&line, &[]), [0, 3, 4, 5]);
         // A row of bends of 15 degrees at long chords alone is no curve.
         let bent = [
             [0.0, 0.0],
