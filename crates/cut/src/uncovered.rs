@@ -200,7 +200,8 @@ impl<'a> Piece<'a> {
         let at = |t: f64| chord.from + chord.along() * t;
         let own = at(0.5 * (span[0] + span[1])) + chord.normal * width;
         // Beyond the centre of a tight curve, the offset point may lie on the cut line by chance.
-        let swallowed = self.is_cloth(own) || self.depth(own) < 2.0 * FLATNESS;
+        let is_beside = || self.cut.distance_below(own, 2.0 * FLATNESS) < 2.0 * FLATNESS;
+        let swallowed = self.is_cloth(own) || is_beside();
         let least = match swallowed {
             true => width,
             false => span

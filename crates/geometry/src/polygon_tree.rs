@@ -5,7 +5,6 @@
 
 use crate::polygon::{RayHit, crosses_ray};
 use crate::{Bounds2, Location, Polygon, Vec2};
-use std::cell::Cell;
 use std::ops::ControlFlow;
 
 const LEAF: usize = 4;
@@ -95,16 +94,29 @@ impl EdgeTree {
 
     /// Distance from a point to the nearest edge (m); infinite without edges.
     pub fn point_distance(&self, point: Vec2) -> f64 {
-        let least = Cell::new(f64::INFINITY);
+        self.distance_below(point, f64::INFINITY)
+    }
+
+    /// Distance from a point to the nearest edge (m) where it is below `most`, else `most`. What lies farther away is not
+    /// looked at, and the nearer half of the edges first.
+    pub fn distance_below(&self, point: Vec2, most: f64) -> f64 {
         let here = Bounds2::of([point]);
-        self.visit(
-            &mut |bounds| bounds.distance(&here) < least.get(),
-            &mut |k| {
-                let distance = point_segment_distance(point, self.edges[k]);
-                least.set(least.get().min(distance));
-            },
-        );
-        least.get()
+        let with_distance = |node: usize| (node, self.boxes[node].distance(&here));
+        let mut least = most;
+        let mut stack = vec![with_distance(0)];
+        while let Some((node, distance)) = stack.pop() {
+            if distance >= least {
+                continue;
+            }
+            if let Some(leaf) = self.leaf(node) {
+                let distances = leaf.map(|k| point_segment_distance(point, self.edges[k]));
+                least = distances.fold(least, f64::min);
+                continue;
+            }
+            let [a, b] = [2 * node + 1, 2 * node + 2].map(with_distance);
+            stack.extend(if a.1 < b.1 { [b, a] } else { [a, b] });
+        }
+        least
     }
 
     /// Calls `visit` for every pair of an edge here and an edge there whose boxes, moved apart by
@@ -275,7 +287,9 @@ mod tests {
             let point = at(point);
             prop_assert_eq!(tree.locate(point), polygon.locate(point));
             let least = polygon.edges().map(|edge| point_segment_distance(point, edge));
-            prop_assert_eq!(tree.point_distance(point), least.fold(f64::INFINITY, f64::min));
+            let least = least.fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(tree.point_distance(point), least);
+            prop_assert_eq!(tree.distance_below(point, 1.5), least.min(1.5));
         }
     }
 

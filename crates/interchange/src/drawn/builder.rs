@@ -519,7 +519,7 @@ pub(crate) fn without_vertices_between(line: &mut DrawnLine, [from, to]: [usize;
 
 /// Whether the cut line of a piece follows from its sew line by no allowances.
 fn is_no_allowance(fit: &CutFit) -> bool {
-    2 * fit.uneven > fit.widths.len() && fit.off_share > MAX_OFF_SHARE
+    fit.is_mostly_uneven() && fit.off_share > MAX_OFF_SHARE
 }
 
 /// Lays pieces that overlap in the coordinates of their file side by side on the table, in rows; their

@@ -134,7 +134,7 @@ pub(crate) fn cut_fit(edges: &[Vec<Curve>], (vertices, dense): (&[Vec2], &[Vec2]
     };
     let mut offs = fit.corner_offs(edges, (vertices, dense), &made);
     let wrong: Vec<usize> = (0..edges.len()).filter(|&c| offs[c] > TRY_OTHERS).collect();
-    if !wrong.is_empty() {
+    if !wrong.is_empty() && !fit.is_mostly_uneven() {
         for corner in others() {
             let mut tried = fit.clone();
             wrong.iter().for_each(|&c| tried.corners[c] = corner);
@@ -179,6 +179,11 @@ fn others() -> [EdgeCorner; 5] {
 }
 
 impl CutFit {
+    /// Whether most edges have no allowance of even width: no corners and tangents make the cut line follow then.
+    pub fn is_mostly_uneven(&self) -> bool {
+        2 * self.uneven > self.widths.len()
+    }
+
     /// The allowances and corners with other edges at the same sew line: how far the cut lines are apart then.
     #[must_use]
     pub fn again(mut self, edges: &[Vec<Curve>], drawn: (&[Vec2], &[Vec2])) -> Self {

@@ -17,7 +17,7 @@ use toile_pattern::{Corner, EdgeCorner};
 /// as few vertices leave open (rad): coordinates are rounded.
 const MAX_TURN: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 /// Most ways to read a corner of the cut line that are tried (1).
-const MAX_TRIES: usize = 4;
+const MAX_TRIES: usize = 3;
 /// Share of the error of a corner that may be left where a turn of its tangents is kept (1).
 const BETTER: f64 = 0.7;
 /// Vertices of the cut line that stand back behind those at which it kinks, as if they asked for this turn more (rad).
@@ -203,6 +203,9 @@ pub(crate) fn turn_ends(
     cut: &DrawnCut<'_>,
     (curved, fit): (&mut Curved, &mut CutFit),
 ) {
+    if fit.is_mostly_uneven() {
+        return;
+    }
     let count = curved.corners.len();
     let mut offs = fit.vertex_offs.clone();
     let wrong: Vec<usize> = (0..offs.len())
