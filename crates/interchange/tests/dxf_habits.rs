@@ -4,9 +4,9 @@
 
 mod dxf_file;
 
-use dxf_file::{File, draft_of, line, off, point, words};
+use dxf_file::{File, blocks, draft_of, line, off, point, words, written};
 use toile_geometry::Vec2;
-use toile_interchange::{ReadOptions, read};
+use toile_interchange::{Format, ReadOptions, read};
 use toile_pattern::OperationKind;
 
 const RING: [[f64; 2]; 4] = [[0.0, 0.0], [400.0, 0.0], [400.0, 600.0], [0.0, 600.0]];
@@ -144,4 +144,49 @@ fn values_of_notches_that_are_none_are_missing_ones() {
     file.block("BACK", &[line(1, &RING, true, &[]), notch]);
     let reading = read(file.text().as_bytes(), &ReadOptions::default(), &[]).unwrap();
     assert_eq!(reading.pattern.panels[0].notches.len(), 1);
+}
+
+#[test]
+fn the_cut_line_of_a_coarse_sew_line_comes_back_with_its_corners() {
+    const WIDTH: f64 = 15.0;
+    // Segments of circles by few vertices, which meet their chord at right angles, and at one so acute that the mitre is
+    // longer than usual.
+    for (angle, steps) in [(90.0_f64, 7), (38.0, 3)] {
+        let angle = angle.to_radians();
+        let arc = |radius: f64, k: usize| {
+            let turn = angle * (1.0 - 2.0 * k as f64 / f64::from(steps));
+            [radius * turn.sin(), radius * turn.cos()]
+        };
+        let mut file = metric();
+        let mut drawn = Vec::new();
+        for (size, radius) in [("M", 200.0), ("L", 230.0)] {
+            let chord = radius * angle.cos() - WIDTH;
+            let corner = ((radius + WIDTH).powi(2) - chord * chord).sqrt();
+            let mut cut: Vec<[f64; 2]> = (0..=steps as usize)
+                .map(|k| arc(radius + WIDTH, k))
+                .collect();
+            cut[0] = [corner, chord];
+            cut[steps as usize] = [-corner, chord];
+            let sew: Vec<[f64; 2]> = (0..=steps as usize).map(|k| arc(radius, k)).collect();
+            let mut parts = vec![line(1, &cut, true, &[]), line(14, &sew, true, &[])];
+            parts.extend([words("Piece Name: YOKE"), words(&format!("Size: {size}"))]);
+            parts.extend([cut[0], cut[steps as usize]].map(|p| point(2, p, &[])));
+            parts.extend((1..steps as usize).map(|k| point(3, cut[k], &[])));
+            file.block(&format!("YOKE_{size}"), &parts);
+            drawn.push(cut);
+        }
+        let text = written(&file.read().pattern, Format::DxfAama);
+        let pieces = blocks(&text);
+        assert_eq!(pieces.len(), 2);
+        for (piece, drawn) in pieces.iter().zip(drawn) {
+            let again = piece.layer(1).next().unwrap();
+            let worst = drawn.iter().map(|&p| off(p, again)).fold(0.0, f64::max);
+            assert!(worst < 0.05, "{angle}: {worst} mm");
+            for corner in [drawn[0], drawn[steps as usize]] {
+                let away = |p: &[f64; 2]| (p[0] - corner[0]).hypot(p[1] - corner[1]);
+                let nearest = again.iter().map(away).fold(f64::INFINITY, f64::min);
+                assert!(nearest < 0.05, "{angle}: {nearest} mm");
+            }
+        }
+    }
 }

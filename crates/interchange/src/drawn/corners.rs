@@ -1,4 +1,4 @@
-//! Corners of a line: where the file marks them, else where it kinks.
+//! Corners of a line: where the file marks them, else where it kinks, or where a curve and a straight line meet.
 
 use super::piece::{DrawnLine, Span};
 use toile_geometry::Vec2;

@@ -155,7 +155,7 @@ pub(crate) fn cut_fit(edges: &[Vec<Curve>], (vertices, dense): (&[Vec2], &[Vec2]
     fit
 }
 
-/// The points of a closed line at which it turns by more than 10 degrees.
+/// The corners of a closed line.
 fn kinks(ring: &[Vec2]) -> Vec<Vec2> {
     let line = DrawnLine::one(ring.to_vec(), true);
     let kinks = (0..ring.len()).filter(|&k| is_kink(&line, 0, k));
@@ -201,12 +201,12 @@ impl CutFit {
         (vertices, dense): (&[Vec2], &[Vec2]),
         made: &[Vec2],
     ) {
-        let offs = self.corner_offs(edges, (vertices, dense), made);
-        self.other_corners = offs.iter().filter(|off| **off > SAME).count();
-        self.vertex_offs = self.offs_near(edges, vertices, made);
+        let drawn = self.offs_near(edges, vertices, made);
+        let back = self.offs_near(edges, made, dense);
+        let is_other = |(a, b): &(&f64, &f64)| a.max(**b) > SAME;
+        self.other_corners = drawn.iter().zip(&back).filter(is_other).count();
         let back = self.offs_near(edges, &kinks(made), dense);
-        let both = self.vertex_offs.iter_mut().zip(back);
-        both.for_each(|(off, back)| *off = off.max(back));
+        self.vertex_offs = drawn.iter().zip(back).map(|(a, b)| a.max(b)).collect();
         let off = vertices.iter().filter(|p| distance(**p, made) > SAME);
         self.off_share = off.count() as f64 / vertices.len().max(1) as f64;
     }

@@ -11,7 +11,7 @@ use super::cut_fit::{CutFit, TRY_OTHERS, cut_fit, edges_of, ring_of};
 use super::piece::{DrawnLine, DrawnPiece};
 use super::spline::Tangents;
 use toile_geometry::{Curve, Vec2};
-use toile_pattern::{Corner, EdgeCorner};
+use toile_pattern::{Corner, EdgeCorner, MitreLimit};
 
 /// Largest angle by which a tangent is turned besides the turn between the last two chords of its curve, which is as much
 /// as few vertices leave open (rad): coordinates are rounded.
@@ -108,8 +108,12 @@ impl<'a> DrawnCut<'a> {
             corner: EdgeCorner::default(),
             turn: 0.0,
         };
+        let at = ends.places[self.base];
+        let mitre = (self.in_size(self.base)[vertices[0]] - at).norm();
         if vertices[0] != vertices[1] {
             turned.corner.kind = Corner::Bevel;
+        } else if mitre > MitreLimit::USUAL * ends.widths[0].max(ends.widths[1]) {
+            turned.corner.limit = MitreLimit::None;
         }
         for size in 0..self.sizes {
             for (side, &vertex) in vertices.iter().enumerate() {
@@ -256,9 +260,9 @@ pub(crate) fn turn_ends(
         }
         let (_, found) = with(&ends, shapes);
         for (corner, turned) in tried {
-            let off = found.vertex_offs.get(corner).copied();
-            if off.is_some_and(|off| off < BETTER * offs[corner]) {
-                offs[corner] = off.unwrap_or_default();
+            let off = found.vertex_offs[corner];
+            if off < BETTER * offs[corner] {
+                offs[corner] = off;
                 set(&mut known, corner, turned);
                 corners[corner] = turned.corner;
                 is_better = true;

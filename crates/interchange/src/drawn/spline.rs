@@ -65,8 +65,8 @@ fn slopes_between(points: &[Vec2], ends: Tangents) -> Vec<Vec2> {
 }
 
 /// Handles of the cubics between points, with the known tangents of the ends: of each cubic the handle after its start
-/// and that before its end. A spline that turns back against one of its chords overshoots; its handles are then those of straight chords,
-/// and the flag is `true`.
+/// and that before its end. A spline that turns back against one of its chords overshoots; its handles are then those
+/// of straight chords, and the flag is `true`.
 pub(crate) fn handles(points: &[Vec2], ends: Tangents) -> (Vec<[Vec2; 2]>, bool) {
     let slopes = slopes_between(points, ends);
     let pairs = || points.windows(2).zip(slopes.windows(2));
