@@ -62,6 +62,30 @@ fn length_and_area_agree_with_fine_polylines() {
     }
 }
 
+/// Curves whose legs differ from their mean by just as much as one piece of quadrature is for.
+#[test]
+fn the_length_of_a_nearly_straight_curve_is_that_of_its_many_parts() {
+    let leg = |angle: f64| {
+        Vec2::new(1.0, 0.0) + Vec2::new(angle.cos(), angle.sin()) * (0.999 * EVEN_LEGS)
+    };
+    for k in 0..24 {
+        let turn = f64::from(k) * PI / 12.0;
+        let third = 2.0 * PI / 3.0;
+        let a = leg(turn);
+        let b = a + leg(turn + third);
+        let curve = Curve::Cubic {
+            start: Vec2::zeros(),
+            controls: [a, b],
+            end: b + leg(turn + 2.0 * third),
+        };
+        let part = |k: u8| curve.between(f64::from(k) / 64.0, f64::from(k + 1) / 64.0);
+        let walked: f64 = (0..64).map(|k| part(k).length()).sum();
+        assert!((walked / curve.length() - 1.0).abs() < 1e-14, "{curve:?}");
+        let half: f64 = (0..32).map(|k| part(k).length()).sum();
+        assert!((half / curve.length_until(0.5) - 1.0).abs() < 1e-14);
+    }
+}
+
 #[test]
 fn pieces_reversals_and_reflections_lie_on_the_curve() {
     for curve in samples() {
