@@ -6,6 +6,7 @@ use super::groups::{groups, is_behind, is_closed, place, value};
 use super::tags::{Tag, tags};
 use super::text::TextEncoding;
 use crate::FormatError;
+use toile_geometry::Vec2;
 
 /// Most vertices of all lines of a file.
 const MAX_VERTICES: usize = 1_000_000;
@@ -143,11 +144,16 @@ impl Reader {
     fn insert(&mut self, group: &[Tag<'_>]) -> Result<(), FormatError> {
         let number = |code| value(group, code).map_or(Ok(None), |tag| tag.number().map(Some));
         self.entities += 1;
+        let at = place(group, 10)?.unwrap_or_default();
+        let [x, y] = [number(41)?.unwrap_or(1.0), number(42)?.unwrap_or(1.0)];
+        let turn = number(50)?.unwrap_or(0.0).to_radians();
+        // What is put in from behind is mirrored at x = 0 after everything else.
+        let side = if is_behind(group) { -1.0 } else { 1.0 };
         self.drawing.inserts.push(Insert {
             block: self.entity.text(group, 2),
-            at: place(group, 10)?.unwrap_or_default(),
-            scale: [number(41)?.unwrap_or(1.0), number(42)?.unwrap_or(1.0)],
-            turn: number(50)?.unwrap_or(0.0).to_radians(),
+            at: Vec2::new(at.x * side, at.y),
+            scale: [x * side, y],
+            turn: turn * side,
         });
         Ok(())
     }
@@ -156,8 +162,8 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::super::drawing::Drawn;
+    use super::super::placed::moved;
     use super::*;
-    use toile_geometry::Vec2;
 
     /// A DXF from pairs separated by blanks; `_` stands for a blank in a value.
     fn dxf(pairs: &str) -> Vec<u8> {
@@ -198,6 +204,19 @@ mod tests {
         let insert = &drawing.inserts[0];
         assert_eq!(insert.at, Vec2::new(5.0, 6.0));
         assert!((insert.turn - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_block_put_in_from_behind_is_mirrored_after_its_scale_and_turn() {
+        let file = dxf("0 SECTION 2 BLOCKS 0 BLOCK 2 A 10 1 20 0 0 POINT 8 4 10 2 20 3 0 ENDBLK 0 ENDSEC
+            0 SECTION 2 ENTITIES 0 INSERT 2 A 10 5 20 6 41 2 42 10 50 90 210 0 220 0 230 -1 0 ENDSEC 0 EOF");
+        let drawing = read_drawing(&file).unwrap();
+        let block = moved(&drawing.blocks[0], &drawing.inserts[0]);
+        let Drawn::Point { at, .. } = &block.entities[0].drawn else {
+            panic!("{block:?}");
+        };
+        // (1, 3) from the base, scaled to (2, 30), turned to (-30, 2), moved to (-25, 8).
+        assert!((at - Vec2::new(25.0, 8.0)).norm() < 1e-12, "{at}");
     }
 
     #[test]
