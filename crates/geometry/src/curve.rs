@@ -215,8 +215,8 @@ impl Curve {
         }
     }
 
-    /// Pieces that a Bezier curve is cut into for quadrature: one if it is nearly straight and walked evenly, as
-    /// between the vertices of a digitised outline.
+    /// Pieces that a Bezier curve is cut into for quadrature: one if it is nearly straight and its speed in the
+    /// parameter nearly constant, as between the vertices of a digitised outline.
     fn length_pieces(&self) -> usize {
         let is_even = |legs: &[Vec2]| {
             let mean = legs.iter().sum::<Vec2>() / legs.len() as f64;

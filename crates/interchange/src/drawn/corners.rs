@@ -9,8 +9,15 @@ const MIN_KINK: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 const MIN_SURE_KINK: f64 = 30.0 / 180.0 * std::f64::consts::PI;
 /// Share of the turn of a vertex of a coarse curve that its neighbours turn by at least (1).
 const MIN_ALIKE: f64 = 0.6;
+/// Fewest vertices in a row that turn alike and are a curve (1): two may be the corners of a straight side.
+const UNMARKED_ROW: usize = 3;
+/// The same where the file marks corners, and none of these.
+pub(crate) const MARKED_ROW: usize = 2;
 /// Chords beside a vertex whose lengths differ by this factor or more are not of one curve (1).
 const UNLIKE_CHORDS: f64 = 4.0;
+/// Turn at the end of a curve above which the long chord beside it is no tangent, by the turn that a tangent makes with the
+/// first chord of the curve (1): a chord of the curve itself turns by 5 times that turn or more.
+const MAX_TANGENT: f64 = 2.2;
 /// Least turn at a vertex of a curve, between chords of one straight line (rad): coordinates are rounded.
 const MIN_BEND: f64 = 5e-3;
 /// Least distance at which a point of a curve tells the direction at a vertex (m).
@@ -62,7 +69,7 @@ fn is_turn(line: &DrawnLine, k: usize) -> bool {
             let into = first(at(k), [a[1], a[0], at(before)]).map(|way| -way);
             let out = first(at(k), [b[0], b[1], at(k + 1)]);
             match (into, out) {
-                (Some(a), Some(b)) => a.perp(&b).atan2(a.dot(&b)).abs() > MIN_KINK,
+                (Some(a), Some(b)) => angle(a, b).abs() > MIN_KINK,
                 _ => true,
             }
         }
@@ -70,13 +77,21 @@ fn is_turn(line: &DrawnLine, k: usize) -> bool {
     }
 }
 
-/// Whether a line has a corner at a vertex in a size: it turns by more than 10 degrees, and not as its neighbours do.
+/// Whether a line that marks no corners has one at a vertex in a size: it turns by more than 10 degrees, and not as its
+/// neighbours do.
 pub(crate) fn is_kink(line: &DrawnLine, size: usize, k: usize) -> bool {
-    let turn = turn(line, size, k);
-    turn.abs() > MIN_KINK && !is_of_coarse_curve(line, size, k, turn)
+    is_kink_but(line, size, k, UNMARKED_ROW)
 }
 
-/// The angle by which a line turns to the left at a vertex in a size (rad); 0 at the ends of an open line.
+/// Whether a line turns at a vertex by more than 10 degrees, and is no vertex of a curve, which has at least so many
+/// vertices in a row that turn alike.
+pub(crate) fn is_kink_but(line: &DrawnLine, size: usize, k: usize, row: usize) -> bool {
+    let turn = turn(line, size, k);
+    turn.abs() > MIN_KINK && !is_of_coarse_curve(line, size, (k, turn), row)
+}
+
+/// The angle by which a line turns to the left at a vertex in a size (rad); 0 at the ends of an open line and at a
+/// vertex that repeats its neighbour.
 fn turn(line: &DrawnLine, size: usize, k: usize) -> f64 {
     let points = line.in_size(size);
     let n = points.len();
@@ -90,29 +105,47 @@ fn turn(line: &DrawnLine, size: usize, k: usize) -> f64 {
     let to = line.between_in(size, k).iter().find(is_off);
     let from = from.copied().unwrap_or(points[before]);
     let to = to.copied().unwrap_or(points[(k + 1) % n]);
-    let (a, b) = (points[k] - from, to - points[k]);
-    a.perp(&b).atan2(a.dot(&b))
+    angle(points[k] - from, to - points[k])
 }
 
-/// Whether a vertex at which a line turns is one of a curve of few vertices: its neighbours turn alike, but for one at
-/// which the curve ends, in a corner beyond doubt or in a straight line.
-fn is_of_coarse_curve(line: &DrawnLine, size: usize, k: usize, own: f64) -> bool {
+/// The angle from one vector to another, positive to the left (rad); 0 where one has no length.
+fn angle(a: Vec2, b: Vec2) -> f64 {
+    match a.norm() > 0.0 && b.norm() > 0.0 {
+        true => a.perp(&b).atan2(a.dot(&b)),
+        false => 0.0,
+    }
+}
+
+/// Whether a vertex at which a line turns is one of a curve of few vertices: one of so many in a row that turn alike,
+/// each beside another of them or beside an end of the curve, which is an end of the line, a corner beyond doubt or a
+/// change to chords of another length.
+fn is_of_coarse_curve(line: &DrawnLine, size: usize, (k, own): (usize, f64), row: usize) -> bool {
     let count = line.len();
-    if own.abs() > MIN_SURE_KINK || has_unlike_chords(line, size, k) {
+    let is_end = |k: usize, turn: f64| {
+        let is_last = !line.is_closed && (k == 0 || k + 1 == count);
+        is_last || turn.abs() > MIN_SURE_KINK || has_unlike_chords(line, size, k)
+    };
+    if is_end(k, own) {
         return false;
     }
-    let neighbours = [count - 1, 1].map(|step| {
-        let k = (k + step) % count;
-        let turn = turn(line, size, k);
-        let is_end = turn.abs() > MIN_SURE_KINK || has_unlike_chords(line, size, k);
-        (is_end, turn * own.signum() >= MIN_ALIKE * own.abs())
-    });
-    neighbours
-        .iter()
-        .all(|(is_end, is_alike)| *is_end || *is_alike)
-        && neighbours
-            .iter()
-            .any(|(is_end, is_alike)| !is_end && *is_alike)
+    let mut alike = 1;
+    for step in [count - 1, 1] {
+        for far in 1..row {
+            let k = (k + far * step) % count;
+            let turn = turn(line, size, k);
+            if is_end(k, turn) {
+                break;
+            }
+            if turn * own.signum() < MIN_ALIKE * own.abs() {
+                if far == 1 {
+                    return false;
+                }
+                break;
+            }
+            alike += 1;
+        }
+    }
+    alike >= row
 }
 
 /// Whether the chords beside a vertex are too unlike in length for one curve, and the file has no points of them.
@@ -131,21 +164,25 @@ fn has_unlike_chords(line: &DrawnLine, size: usize, k: usize) -> bool {
 }
 
 /// Whether a curve and a straight line that goes on from it without a kink meet at a vertex: in every size one chord is
-/// much longer than the other, at whose other end the line turns on.
+/// much longer than the other, at whose other end the line turns on, and runs along the curve's tangent.
 fn ends_curve(line: &DrawnLine, k: usize) -> bool {
     let count = line.len();
     let ends = |size: usize| {
         let points = line.in_size(size);
-        let [before, after] = [(k + count - 1) % count, (k + 1) % count];
-        let length = |end: usize| (points[end] - points[k]).norm();
-        let other = if length(before) < length(after) {
-            before
-        } else {
-            after
+        let length = |a: usize, b: usize| (points[a] - points[b]).norm();
+        let [before, after] = [count - 1, 1].map(|step| (k + step) % count);
+        let (other, beyond) = match length(before, k) < length(after, k) {
+            true => (before, (k + count - 2) % count),
+            false => (after, (k + 2) % count),
         };
+        let turned = turn(line, size, other).abs();
+        // A curve turns evenly along its chords, half of a chord's share at each end of it.
+        let first = length(k, other);
+        let by_tangent = turned * first / (first + length(other, beyond));
         has_unlike_chords(line, size, k)
-            && turn(line, size, other).abs() > MIN_BEND
+            && turned > MIN_BEND
             && !is_kink(line, size, other)
+            && turn(line, size, k).abs() <= MAX_TANGENT * by_tangent
     };
     (0..line.by_size.len()).all(ends)
 }
@@ -232,6 +269,20 @@ mod tests {
         ];
         let line = DrawnLine::one(split.map(Vec2::from).to_vec(), true);
         assert_eq!(corners(&line, &[]), [0, 3, 4, 5]);
+        // Two turns of 20 degrees between straight sides are corners.
+        let sides = [
+            [0.0, 0.0],
+            [0.2, 0.0],
+            [0.3879, 0.0684],
+            [0.5411, 0.197],
+            [0.2411, 0.497],
+            [-0.1, 0.4],
+        ];
+        let line = DrawnLine::one(sides.map(Vec2::from).to_vec(), true);
+        assert_eq!(corners(&line, &[]), [0, 1, 2, 3, 4, 5]);
+        // A curve that is open has the ends of the line and no others.
+        let open = DrawnLine::one((0..7).map(at).collect(), false);
+        assert_eq!(corners(&open, &[]), [0, 6]);
         // A row of bends of 15 degrees at long chords alone is no curve.
         let bent = [
             [0.0, 0.0],
@@ -243,5 +294,24 @@ mod tests {
         ];
         let line = DrawnLine::one(bent.map(Vec2::from).to_vec(), true);
         assert_eq!(corners(&line, &[]), [0, 1, 2, 3, 4, 5]);
+    }
+
+    #[test]
+    fn a_stray_vertex_of_a_curve_is_no_corner() {
+        let at = |turn: f64| Vec2::new(turn.to_radians().cos(), turn.to_radians().sin()) * 0.1;
+        let mut points: Vec<Vec2> = (0..=15).map(|k| at(6.0 * f64::from(k))).collect();
+        points.insert(8, at(42.6));
+        points.push(Vec2::zeros());
+        let line = DrawnLine::one(points, true);
+        assert_eq!(corners(&line, &[]), [0, 16, 17]);
+    }
+
+    #[test]
+    fn a_vertex_that_is_written_twice_turns_nowhere() {
+        for [x, y] in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
+            let at = |k: i32| Vec2::new(x, y) * f64::from(k) * 0.1;
+            let line = DrawnLine::one([0, 1, 1, 2].map(at).to_vec(), false);
+            assert_eq!(corners(&line, &[]), [0, 3]);
+        }
     }
 }

@@ -34,6 +34,8 @@ pub(crate) struct Cubics {
     pub ends_at_vertex: Vec<bool>,
     /// Whether straight chords are kept in some size, as a smooth curve would turn back.
     pub has_chords: bool,
+    /// Whether they are the spline through the vertices, which takes tangents at its ends.
+    pub is_spline: bool,
 }
 
 impl Cubics {
@@ -107,6 +109,7 @@ pub(crate) fn cubics(
             );
         }
         found.ends_at_vertex = vec![true; to - from];
+        found.is_spline = true;
         return found;
     }
     for k in 0..to - from {
@@ -137,7 +140,7 @@ fn given(line: &DrawnLine, (from, to): (usize, usize)) -> Option<Cubics> {
         starts: vec![vertices[from]],
         by_size: vec![cubics?],
         ends_at_vertex: vec![true; to - from],
-        has_chords: false,
+        ..Cubics::default()
     })
 }
 

@@ -45,12 +45,25 @@ impl Curved {
         let mut curved = self.clone();
         for (edge, ends) in ends.iter().enumerate() {
             let is_known = ends.iter().flatten().any(Option::is_some);
-            if is_known && self.curves[edge].is_some() {
+            if is_known && self.is_spline(edge) {
                 let vertices = self.vertices(edge, line.len());
                 curved.curves[edge] = Some(cubics(line, vertices, (ends.len(), ends)));
             }
         }
         curved
+    }
+
+    /// Whether an edge is a spline through its vertices alone.
+    pub fn is_spline(&self, edge: usize) -> bool {
+        self.curves[edge]
+            .as_ref()
+            .is_some_and(|curve| curve.is_spline)
+    }
+
+    /// Number of curves that keep straight chords, as a smooth one would turn back.
+    pub fn chords(&self) -> usize {
+        let curves = self.curves.iter().flatten();
+        curves.filter(|curve| curve.has_chords).count()
     }
 
     /// The vertices at the ends of an edge of a line of `count` vertices; the second may lie beyond the last.

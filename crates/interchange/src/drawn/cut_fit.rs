@@ -107,14 +107,11 @@ pub(crate) fn cut_fit(edges: &[Vec<Curve>], (vertices, dense): (&[Vec2], &[Vec2]
     fit.usual = longest(&even.collect::<Vec<(f64, f64)>>());
     for ((found, _), edge) in found.into_iter().zip(edges) {
         // Curves of few vertices run apart between them, though the vertices themselves are at an even distance.
-        let mut vertices = edge
-            .iter()
-            .skip(1)
-            .map(|curve| distance(curve.start(), dense));
-        let is_usual = edge.len() > 1 && vertices.all(|off| (off - fit.usual).abs() <= SAME);
+        let is_near = |curve: &Curve| (distance(curve.start(), dense) - fit.usual).abs() <= SAME;
+        let is_usual = || edge.len() > 2 && edge.iter().skip(1).all(is_near);
         fit.widths.push(match found {
             Width::Even(width) => rounded(width),
-            Width::Uneven { .. } if is_usual => fit.usual,
+            Width::Uneven { .. } if is_usual() => fit.usual,
             Width::Uneven { mean, spread } => {
                 fit.uneven += 1;
                 // The legs of a dart that is drawn lie at no distance of their own from the cut line.
@@ -184,7 +181,7 @@ impl CutFit {
         2 * self.uneven > self.widths.len()
     }
 
-    /// The allowances and corners with other edges at the same sew line: how far the cut lines are apart then.
+    /// The same widths and corners at a sew line whose edges are drawn otherwise, with the distances of the cut lines anew.
     #[must_use]
     pub fn again(mut self, edges: &[Vec<Curve>], drawn: (&[Vec2], &[Vec2])) -> Self {
         match self.made(edges) {

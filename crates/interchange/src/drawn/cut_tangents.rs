@@ -1,9 +1,9 @@
 //! Directions of the curves of a sew line at its corners, by the corners of the cut line.
 //!
 //! A sew line of few vertices hardly tells in which direction a curve ends, and the corner of the cut line that is made
-//! of it is off by millimetres. The cut line as drawn tells it: where two edges meet, its corner `V` lies
-//! at the width of the allowance from the tangent of each, so that the tangent at the corner `S` of the sew line makes
-//! the angle `asin(width / |V - S|)` with `V - S`.
+//! of it is off by millimetres. The cut line as drawn tells it: where two edges meet, its corner `V` (the edge's own
+//! one of two, where the corner is cut off) lies at the width of the allowance from the tangent of each, so that the
+//! tangent at the corner `S` of the sew line makes the angle `asin(width / |V - S|)` with `V - S`.
 
 use super::corners::is_kink;
 use super::curved::Curved;
@@ -20,7 +20,7 @@ const MAX_TURN: f64 = 2.0 / 180.0 * std::f64::consts::PI;
 const MAX_TRIES: usize = 3;
 /// Share of the error of a corner that may be left where a turn of its tangents is kept (1).
 const BETTER: f64 = 0.7;
-/// Vertices of the cut line that stand back behind those at which it kinks, as if they asked for this turn more (rad).
+/// Added to the turn by which readings are put in order, for each vertex of the cut line at which it does not kink (rad).
 const NO_KINK: f64 = 0.5;
 /// Share by which a vertex of the cut line may be nearer to a corner than the allowance is wide, as it is rounded (1).
 const ROUNDED: f64 = 0.01;
@@ -39,7 +39,7 @@ pub(crate) struct DrawnCut<'a> {
 
 /// How a corner of the cut line is read.
 struct Turned {
-    /// In each size the tangent of the edge before the corner and that of the edge after it.
+    /// In each size the tangent of the edge before the corner and that of the edge after it, where they are known.
     tangents: Vec<Tangents>,
     /// Shape of the corner of the cut line.
     corner: EdgeCorner,
@@ -69,6 +69,12 @@ impl<'a> DrawnCut<'a> {
     pub fn fit(&self, outline: &DrawnLine, curved: &Curved) -> CutFit {
         let edges = edges_of(outline, (&curved.corners, &curved.curves), self.base);
         cut_fit(&edges, (self.vertices, &self.dense))
+    }
+
+    /// Whether a size has a cut line of its own, and not that of the base size because its own has other vertices.
+    fn has_own(&self, outline: &DrawnLine, size: usize) -> bool {
+        let is_base = |line: &DrawnLine| line.in_size(size) == line.in_size(self.base);
+        self.in_size(size) != self.in_size(self.base) || is_base(outline)
     }
 
     /// Its vertices in a size.
@@ -115,7 +121,7 @@ impl<'a> DrawnCut<'a> {
         } else if mitre > MitreLimit::USUAL * ends.widths[0].max(ends.widths[1]) {
             turned.corner.limit = MitreLimit::None;
         }
-        for size in 0..self.sizes {
+        for size in (0..self.sizes).filter(|&size| ends.has_cut[size]) {
             for (side, &vertex) in vertices.iter().enumerate() {
                 let own = ends.tangents[size][side];
                 let to = *self.in_size(size).get(vertex)? - ends.places[size];
@@ -145,6 +151,8 @@ struct CornerEnds {
     /// Directions in each size, of length 1.
     tangents: Vec<[Vec2; 2]>,
     is_curve: [bool; 2],
+    /// Whether each size has a cut line of its own.
+    has_cut: Vec<bool>,
     /// Turns between the last two chords in the base size (rad).
     turns: [f64; 2],
     /// Widths of the allowances (m).
@@ -156,7 +164,7 @@ impl CornerEnds {
     fn of(
         (curved, fit): (&Curved, &CutFit),
         (lines, base): (&[Vec<Vec<Curve>>], usize),
-        corner: usize,
+        (corner, has_cut): (usize, &[bool]),
     ) -> Option<Self> {
         let count = curved.corners.len();
         let edges = [(corner + count - 1) % count, corner];
@@ -181,7 +189,8 @@ impl CornerEnds {
             places: lines.iter().map(|lines| lines[corner][0].start()).collect(),
             tangents: tangents.collect::<Option<_>>()?,
             turns,
-            is_curve: edges.map(|edge| curved.curves[edge].is_some()),
+            is_curve: edges.map(|edge| curved.is_spline(edge)),
+            has_cut: has_cut.to_vec(),
             widths: edges.map(|edge| fit.widths[edge]),
         })
     }
@@ -217,10 +226,13 @@ pub(crate) fn turn_ends(
         .collect();
     let in_size = |size| edges_of(outline, (&curved.corners, &curved.curves), size);
     let lines: Vec<Vec<Vec<Curve>>> = (0..cut.sizes).map(in_size).collect();
+    let has_cut: Vec<bool> = (0..cut.sizes)
+        .map(|size| cut.has_own(outline, size))
+        .collect();
     let turns: Vec<Vec<Turned>> = wrong
         .iter()
         .map(|&corner| {
-            let ends = CornerEnds::of((curved, fit), (&lines, cut.base), corner);
+            let ends = CornerEnds::of((curved, fit), (&lines, cut.base), (corner, &has_cut));
             let ends = ends.filter(|ends| ends.is_curve.contains(&true));
             ends.map_or_else(Vec::new, |ends| cut.turns(&ends, fit.reach(corner)))
         })
@@ -270,7 +282,10 @@ pub(crate) fn turn_ends(
         }
     }
     if is_better {
-        (*curved, *fit) = with(&known, corners);
+        let (turned, found) = with(&known, corners);
+        if turned.chords() <= curved.chords() {
+            (*curved, *fit) = (turned, found);
+        }
     }
 }
 
@@ -327,6 +342,26 @@ mod tests {
         assert!(before > TRY_OTHERS, "{before}");
         assert!(fit.vertex_offs[0] < 1e-9, "{:?}", fit.vertex_offs);
         assert_eq!(fit.widths, [0.01, 0.01]);
+    }
+
+    #[test]
+    fn a_size_without_a_cut_line_of_its_own_keeps_its_tangents() {
+        let (mut outline, mut piece) = half_disc(7);
+        outline.is_corner = (0..=7).map(|k| k == 0 || k == 7).collect();
+        // The other size differs by little, so that the tangents that the base size's cut line tells are no great turns.
+        outline.by_size[1] = outline.by_size[0].iter().map(|p| p * 1.01).collect();
+        let cut = piece.cut_outline.as_mut().unwrap();
+        cut.by_size[1] = cut.by_size[0].clone();
+        let cut = DrawnCut::of(&piece, 0, 2).unwrap();
+        let mut curved = Curved::new(&outline, None, 2);
+        let mut fit = cut.fit(&outline, &curved);
+        let in_size =
+            |curved: &Curved, size| edges_of(&outline, (&curved.corners, &curved.curves), size);
+        let before = [0, 1].map(|size| in_size(&curved, size));
+        turn_ends(&outline, &cut, (&mut curved, &mut fit));
+        let after = [0, 1].map(|size| in_size(&curved, size));
+        assert_ne!(before[0], after[0]);
+        assert_eq!(before[1], after[1]);
     }
 
     #[test]

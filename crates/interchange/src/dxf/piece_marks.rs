@@ -4,7 +4,7 @@
 
 use super::block_piece::{BlockLine, BlockPiece};
 use crate::drawn::allowance::{distance, nearest};
-use crate::drawn::corners::is_kink;
+use crate::drawn::corners::{MARKED_ROW, is_kink_but};
 use crate::drawn::piece::{DrawnLine, DrawnNotch};
 use std::collections::BTreeMap;
 use toile_geometry::Vec2;
@@ -140,7 +140,7 @@ pub(super) fn corners(
     }
     if is_beside {
         for (k, is_corner) in is_corner.iter_mut().enumerate() {
-            *is_corner |= is_kink(outline, base, k);
+            *is_corner |= is_kink_but(outline, base, k, MARKED_ROW);
         }
     }
     match is_corner.iter().any(|&is_corner| is_corner) {
