@@ -9,15 +9,15 @@ const MIN_KINK: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 const MIN_SURE_KINK: f64 = 30.0 / 180.0 * std::f64::consts::PI;
 /// Share of the turn of a vertex of a coarse curve that its neighbours turn by at least (1).
 const MIN_ALIKE: f64 = 0.6;
-/// Fewest vertices in a row that turn alike and are a curve (1): two may be the corners of a straight side.
+/// Fewest vertices in a row at which a curve bends (1): two may be the corners of a straight side.
 const UNMARKED_ROW: usize = 3;
 /// The same where the file marks corners, and none of these.
 pub(crate) const MARKED_ROW: usize = 2;
 /// Chords beside a vertex whose lengths differ by this factor or more are not of one curve (1).
 const UNLIKE_CHORDS: f64 = 4.0;
-/// Turn at the end of a curve above which the long chord beside it is no tangent, by the turn that a tangent makes with the
-/// first chord of the curve (1): a chord of the curve itself turns by 5 times that turn or more.
-const MAX_TANGENT: f64 = 2.2;
+/// Share of the turn that a long chord of a curve would make with the chord before, below which it is none of the curve
+/// (1).
+const NOT_OF_CURVE: f64 = 0.5;
 /// Least turn at a vertex of a curve, between chords of one straight line (rad): coordinates are rounded.
 const MIN_BEND: f64 = 5e-3;
 /// Least distance at which a point of a curve tells the direction at a vertex (m).
@@ -83,8 +83,8 @@ pub(crate) fn is_kink(line: &DrawnLine, size: usize, k: usize) -> bool {
     is_kink_but(line, size, k, UNMARKED_ROW)
 }
 
-/// Whether a line turns at a vertex by more than 10 degrees, and is no vertex of a curve, which has at least so many
-/// vertices in a row that turn alike.
+/// Whether a line turns at a vertex by more than 10 degrees, and is no vertex of a curve, which bends at so many
+/// vertices in a row at least.
 pub(crate) fn is_kink_but(line: &DrawnLine, size: usize, k: usize, row: usize) -> bool {
     let turn = turn(line, size, k);
     turn.abs() > MIN_KINK && !is_of_coarse_curve(line, size, (k, turn), row)
@@ -116,9 +116,9 @@ fn angle(a: Vec2, b: Vec2) -> f64 {
     }
 }
 
-/// Whether a vertex at which a line turns is one of a curve of few vertices: one of so many in a row that turn alike,
-/// each beside another of them or beside an end of the curve, which is an end of the line, a corner beyond doubt or a
-/// change to chords of another length.
+/// Whether a vertex at which a line turns is one of a curve of few vertices: the line turns alike at its neighbours, but
+/// for one at which the curve ends, and bends at so many vertices in a row. A curve ends at an end of the line, a corner
+/// beyond doubt or a change to chords of another length.
 fn is_of_coarse_curve(line: &DrawnLine, size: usize, (k, own): (usize, f64), row: usize) -> bool {
     let count = line.len();
     let is_end = |k: usize, turn: f64| {
@@ -128,24 +128,21 @@ fn is_of_coarse_curve(line: &DrawnLine, size: usize, (k, own): (usize, f64), row
     if is_end(k, own) {
         return false;
     }
-    let mut alike = 1;
+    let mut bent = 1;
     for step in [count - 1, 1] {
         for far in 1..row {
             let k = (k + far * step) % count;
             let turn = turn(line, size, k);
-            if is_end(k, turn) {
+            if is_end(k, turn) || (far > 1 && turn.abs() <= MIN_BEND) {
                 break;
             }
-            if turn * own.signum() < MIN_ALIKE * own.abs() {
-                if far == 1 {
-                    return false;
-                }
-                break;
+            if far == 1 && turn * own.signum() < MIN_ALIKE * own.abs() {
+                return false;
             }
-            alike += 1;
+            bent += 1;
         }
     }
-    alike >= row
+    bent >= row
 }
 
 /// Whether the chords beside a vertex are too unlike in length for one curve, and the file has no points of them.
@@ -164,25 +161,24 @@ fn has_unlike_chords(line: &DrawnLine, size: usize, k: usize) -> bool {
 }
 
 /// Whether a curve and a straight line that goes on from it without a kink meet at a vertex: in every size one chord is
-/// much longer than the other, at whose other end the line turns on, and runs along the curve's tangent.
+/// much longer than the other, at whose other end the line turns on, and turns less than a chord of the curve would.
 fn ends_curve(line: &DrawnLine, k: usize) -> bool {
     let count = line.len();
     let ends = |size: usize| {
         let points = line.in_size(size);
         let length = |a: usize, b: usize| (points[a] - points[b]).norm();
         let [before, after] = [count - 1, 1].map(|step| (k + step) % count);
-        let (other, beyond) = match length(before, k) < length(after, k) {
-            true => (before, (k + count - 2) % count),
-            false => (after, (k + 2) % count),
+        let (other, beyond, long) = match length(before, k) < length(after, k) {
+            true => (before, (k + count - 2) % count, length(after, k)),
+            false => (after, (k + 2) % count, length(before, k)),
         };
-        let turned = turn(line, size, other).abs();
-        // A curve turns evenly along its chords, half of a chord's share at each end of it.
-        let first = length(k, other);
-        let by_tangent = turned * first / (first + length(other, beyond));
+        // A curve turns evenly along its chords, by half of what belongs to a chord at each end of it.
+        let (turned, first) = (turn(line, size, other), length(k, other));
+        let by_curve = turned * (first + long) / (first + length(other, beyond));
         has_unlike_chords(line, size, k)
-            && turned > MIN_BEND
+            && turned.abs() > MIN_BEND
             && !is_kink(line, size, other)
-            && turn(line, size, k).abs() <= MAX_TANGENT * by_tangent
+            && turn(line, size, k) * by_curve.signum() < NOT_OF_CURVE * by_curve.abs()
     };
     (0..line.by_size.len()).all(ends)
 }
