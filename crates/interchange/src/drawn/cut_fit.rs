@@ -356,6 +356,27 @@ mod tests {
     }
 
     #[test]
+    fn an_allowance_that_grows_along_an_edge_is_uneven_though_one_vertex_has_the_usual_width() {
+        let ring = [[0.0, 0.0], [0.15, 0.0], [0.3, 0.0], [0.3, 0.5], [0.0, 0.5]].map(Vec2::from);
+        let line = |start, end| Curve::Line { start, end };
+        let [a, b, c, d, e] = ring;
+        let sew = [
+            vec![line(a, b), line(b, c)],
+            vec![line(c, d)],
+            vec![line(d, e)],
+            vec![line(e, a)],
+        ];
+        // From 5 to 15 mm along the hem, and 10 beside all other edges.
+        let slope = 0.01 / 0.3;
+        let below = |x: f64| Vec2::new(x, -0.005 - slope * x);
+        let above = [[0.31, 0.51], [-0.01, 0.51]].map(Vec2::from);
+        let cut = [below(-0.01), below(0.31), above[0], above[1]];
+        let fit = cut_fit(&sew, (&cut, &cut));
+        assert_eq!(fit.uneven, 1);
+        assert_eq!(fit.usual, 0.01);
+    }
+
+    #[test]
     fn a_cut_line_that_follows_from_no_allowance_is_off() {
         let cut = [[-0.01, -0.05], [0.33, -0.02], [0.27, 0.54], [0.0, 0.51]].map(Vec2::from);
         let fit = cut_fit(&square(SEW), (&cut, &cut));
