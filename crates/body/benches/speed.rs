@@ -3,7 +3,8 @@
 //! `cargo bench -p toile-body --bench speed`
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "../tests/common/mod.rs"]
+#[allow(dead_code)]
+#[path = "../tests/suite/common/mod.rs"]
 mod common;
 
 use common::freesewing::freesewing;

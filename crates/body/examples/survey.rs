@@ -7,7 +7,7 @@
 //! survey's own.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
-#[path = "../tests/common/survey.rs"]
+#[path = "../tests/suite/common/survey.rs"]
 mod survey;
 
 use rayon::prelude::*;

@@ -2,7 +2,7 @@
 //! floor, with one thread and two.
 #![allow(missing_docs, clippy::print_stdout, clippy::unwrap_used)]
 
-#[path = "../tests/support/sheets.rs"]
+#[path = "../tests/suite/support/sheets.rs"]
 mod sheets;
 
 use sheets::sheet;

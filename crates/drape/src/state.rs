@@ -8,7 +8,7 @@
 //! - [`crate::garment`] (`checkpoint.rs`), [`crate::scene_checkpoint`]: the state in checkpoints.
 //!
 //! By hand: `clear_equilibrium_memory`, the version of checkpoints (crate `interchange`, `checkpoint.rs`), a
-//! comparison in `drape/tests/transfer.rs`. The compiler asks in `clone_from`, `at_rest` and `check`.
+//! comparison in `drape/tests/suite/transfer.rs`. The compiler asks in `clone_from`, `at_rest` and `check`.
 
 use crate::collision::ClothMemory;
 use crate::{ContactSample, DrapeError, InternalStrain, Memory, Model, SolidFriction};

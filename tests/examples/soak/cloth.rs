@@ -1,16 +1,16 @@
 //! Long runs of cloth on cloth: hard scenes at full size, and planted tangles.
 
-#[path = "../../../crates/drape/tests/support/hard_run.rs"]
+#[path = "../../../crates/drape/tests/suite/support/hard_run.rs"]
 mod hard_run;
-#[path = "../../../crates/drape/tests/support/hard_scenes.rs"]
+#[path = "../../../crates/drape/tests/suite/support/hard_scenes.rs"]
 mod hard_scenes;
-#[path = "../../../crates/drape/tests/support/numbers.rs"]
+#[path = "../../../crates/drape/tests/suite/support/numbers.rs"]
 mod numbers;
-#[path = "../../../crates/drape/tests/support/tangles.rs"]
+#[path = "../../../crates/drape/tests/suite/support/tangles.rs"]
 mod planted;
-#[path = "../../../crates/drape/tests/support/sheets.rs"]
+#[path = "../../../crates/drape/tests/suite/support/sheets.rs"]
 mod sheets;
-#[path = "../../../crates/drape/tests/support/solids.rs"]
+#[path = "../../../crates/drape/tests/suite/support/solids.rs"]
 mod solids;
 
 use hard_run::run;

@@ -7,8 +7,8 @@
 //! - [`crate::app::tool_icons`] (`strokes`): icon of each tool;
 //! - [`crate::app::ToileApp::canvas_menu`] (`bars.rs`): the menu on the canvas.
 //!
-//! By hand: a new tool in `GROUPS` and in that menu; `docs/GUIDE.md`, `ui/tests/drafting.rs` or
-//! `ui/tests/alter.rs`. `ui/tests/every_slot.rs` and `ui/tests/commands.rs` find it by themselves.
+//! By hand: a new tool in `GROUPS` and in that menu; `docs/GUIDE.md`, `ui/tests/suite/drafting.rs` or
+//! `ui/tests/suite/alter.rs`. `ui/tests/suite/every_slot.rs` and `ui/tests/suite/commands.rs` find it by themselves.
 
 use super::ToileApp;
 use super::command::{UiCommand, shortcut_words};

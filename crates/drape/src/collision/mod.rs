@@ -45,7 +45,7 @@ mod moves;
 mod nearness;
 mod neighbour_lists;
 #[cfg(test)]
-#[path = "../../tests/support/numbers.rs"]
+#[path = "../../tests/suite/support/numbers.rs"]
 mod numbers;
 mod proximity;
 mod reach;

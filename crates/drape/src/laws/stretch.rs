@@ -31,7 +31,7 @@
 //! - crate `reference` (`patches/`: `is_plain`, `membrane.rs`, `EdgeMembrane`, `limits.rs`): patches know linear laws
 //!   alone.
 //!
-//! By hand: cases in `drape/tests/features.rs`, recorded states in `lab/tests/recorded/states.rs`, a strip in
+//! By hand: cases in `reference/tests/suite/features.rs`, recorded states in `lab/tests/recorded/states.rs`, a strip in
 //! `lab/src/laws/strain.rs`, pages `docs/methods/laws.md` and `docs/FORMATS.md`.
 
 use crate::Compression;

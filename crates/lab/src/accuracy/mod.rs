@@ -149,7 +149,7 @@ pub static SECTIONS: [Section; 10] = [
         title: "Drafting: a drag",
         claim: "One pointer move of a drag as the window makes it, without checks and drawing, beside evaluating everything afresh: medians of moves, then of points. \
                 The large pattern is made by rule: 200 panels of 100 points, with curves, darts, notches, seams and formulas. An evaluation that is kept up to \
-                date equals a fresh one to the bit (`cargo test -p toile-pattern --test plans kept`).",
+                date equals a fresh one to the bit (`cargo test -p toile-pattern plans::kept`).",
         command: "toile bench drag",
         measure: benches::drag,
     },

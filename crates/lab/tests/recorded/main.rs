@@ -6,12 +6,14 @@
 //! `TOILE_RECORD=1 cargo test --test recorded` records anew and says what changed most.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-#[path = "../../../session/tests/support/mod.rs"]
+#[allow(dead_code)]
+#[path = "../../../session/tests/suite/support/mod.rs"]
 mod band;
 mod ends;
 mod frozen;
 mod motions;
-#[path = "../../../drape/tests/support/numbers.rs"]
+#[allow(dead_code)]
+#[path = "../../../drape/tests/suite/support/numbers.rs"]
 mod numbers;
 mod record;
 mod states;

@@ -14,8 +14,8 @@
 //! - [`crate::press::press_arrows`], [`crate::kinks`]: arrows of what is pressed; kinks that it leaves.
 //!
 //! The compiler asks in all of these but `is_altered` and `is_split`, which name kinds by hand. By hand, too:
-//! a tool of the window, its choices in the inspector, `interchange/tests/operation_table.rs`,
-//! `pattern/tests/plans`.
+//! a tool of the window, its choices in the inspector, `interchange/tests/suite/operation_table.rs`,
+//! `pattern/tests/suite/plans`.
 
 use crate::fields::{Choice, Clash, Told, ValueField, group, key, length, plain};
 use crate::{CurveId, LineName, Mark, Number, OperationId, PointId, SheetId, fields};

@@ -17,7 +17,7 @@
 //! - [`crate::plan::paste`]: copies with new ids.
 //!
 //! The reader and the writer of files follow these lists. Random patterns for tests are made in
-//! `interchange/tests/random_pattern`.
+//! `interchange/tests/suite/random_pattern`.
 
 mod choice;
 mod count;

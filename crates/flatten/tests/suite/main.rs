@@ -1,0 +1,8 @@
+//! All tests over the public interface, in one program: `cargo test -p toile-flatten NAME::` runs those of one file.
+#![allow(clippy::print_stdout, clippy::unwrap_used)]
+
+mod closed_forms;
+mod common;
+mod refused;
+mod regions;
+mod sphere;

@@ -1,0 +1,33 @@
+//! All tests over the public interface, in one program: `cargo test -p toile-interchange NAME::` runs those of one file.
+#![allow(clippy::print_stdout, clippy::unwrap_used)]
+
+mod bodies;
+mod characters;
+mod cut_piece;
+mod cut_pieces;
+mod draft_table;
+mod dxf_file;
+mod dxf_grading;
+mod dxf_habits;
+mod dxf_mutated;
+mod dxf_outlines;
+mod dxf_patterns;
+mod dxf_vendors;
+mod dxf_written;
+mod garmentcode_samples;
+mod knife;
+mod marker_plot;
+mod marker_svg;
+mod native_fitting;
+mod native_guides;
+mod native_markers;
+mod native_properties;
+mod operation_table;
+mod piece_sides;
+mod random_pattern;
+mod read_back;
+mod recorded_drafts;
+mod shipped_patterns;
+mod svg;
+mod trued_darts;
+mod trued_pleats;

@@ -1,0 +1,31 @@
+//! All tests over the public interface, in one program: `cargo test -p toile-session NAME::` runs those of one file.
+#![allow(clippy::print_stdout, clippy::unwrap_used)]
+
+mod bodies;
+mod commands;
+mod cut_line;
+mod document_markers;
+mod export;
+mod figures;
+mod fitting;
+mod frames;
+mod garment_edits;
+mod journals;
+mod layers;
+mod live;
+mod make;
+mod marker_cloth;
+mod marker_rules;
+mod marker_settings;
+mod marker_stories;
+mod nest_items;
+mod nesting;
+mod pdf_back;
+mod print;
+mod recovery;
+mod replays;
+mod samples;
+mod scene_pictures;
+mod scenes;
+mod seams_in_sizes;
+mod support;
