@@ -9,7 +9,7 @@
 //!   follow them.
 //!
 //! The compiler asks a new feature who asks for it and who supports it. By hand: `only_damps`, `is_plain`, a
-//! case in `drape/tests/features.rs`, a row in `docs/methods/integrators.md`.
+//! case in `reference/tests/suite/features.rs`, a row in `docs/methods/integrators.md`.
 
 use crate::material::DissipativeLaws;
 use crate::world::{Kind, Object, World};

@@ -16,8 +16,7 @@
 //!
 //! The compiler asks a new kind for its family, its maker and its largest number of iterations. By hand:
 //! `balances_forces` and the functions of `Method` have defaults; tests list methods in
-//! `reference/tests/suite` and `lab/src/laws`, pages in
-//! `docs/methods/integrators.md`.
+//! `reference/tests/suite` and `lab/src/laws`, a page in `docs/methods/integrators.md`.
 
 use crate::collision::Tally;
 use crate::{DrapeError, State, System};

@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-tests NAME::` runs those of one file.
+//! Tests over the public interfaces of all crates, in one program: `cargo test -p toile-tests --test suite NAME::` runs those of one file.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 mod checkpoints;

@@ -1,7 +1,7 @@
 //! Every view of the window at 1280 x 800, by day and by night: what belongs to it is there, whole inside the
 //! window. Where `TOILE_SCREENS` names a folder and there is a graphics adapter, pictures are written there:
 //!
-//!     TOILE_SCREENS=$PWD/docs/screens cargo test --workspace --test suite every_view::
+//!     TOILE_SCREENS=$PWD/docs/screens cargo test -p toile-ui --test suite every_view::
 
 use crate::drafter::Drafter;
 use crate::screens::{Colours, Part, Screens};

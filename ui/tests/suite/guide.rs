@@ -3,7 +3,7 @@
 //! it drapes. Where `TOILE_SCREENS` names a folder and there is a graphics adapter, the pictures of
 //! the guide are written there:
 //!
-//!     TOILE_SCREENS=$PWD/docs/screens cargo test --workspace --test suite guide::
+//!     TOILE_SCREENS=$PWD/docs/screens cargo test -p toile-ui --test suite guide::
 
 use crate::drafter::Drafter;
 use crate::guide_reader::Reader;

@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-assembly NAME::` runs those of one file.
+//! All tests over the public interface, in one program: `cargo test -p toile-assembly --test suite NAME::` runs those of one file.
 #![allow(clippy::unwrap_used)]
 
 mod flares;

@@ -1,7 +1,6 @@
 //! Garments stand round the body: outside the skin, not crossing, not stretched.
 
-use crate::support;
-use crate::support::{Doll, piece, polygon, poncho, skirt, tee, trousers, worn};
+use crate::support::{self, Doll, piece, polygon, poncho, skirt, tee, trousers, worn};
 use toile_assembly::{Assembled, AssemblyOptions, assemble, sanity};
 use toile_geometry::{Rigid, Vec3};
 use toile_pattern::{BodyPart, Draft, Facing, Worn};

@@ -1,7 +1,6 @@
 //! Triangles are nearly equilateral and of the asked size.
 
-use crate::support;
-use crate::support::{draft, piece, polygon, poncho, skirt, tee, trousers};
+use crate::support::{self, draft, piece, polygon, poncho, skirt, tee, trousers};
 use toile_assembly::{MeshQuality, combine, mesh_pieces};
 use toile_geometry::Curve;
 use toile_pattern::{Draft, LineId, PieceLine, Worn};

@@ -1,7 +1,6 @@
 //! Every kind of corner against its closed form, and broken input.
 
-use crate::common;
-use crate::common::{line, meet, seam_of, vertex_near};
+use crate::common::{self, line, meet, seam_of, vertex_near};
 use toile_cut::{
     Corner, CutError, EdgeIndex, Finding, MITRE_LIMIT, SeamEdge, SeamLine, SegmentKind, cut_line,
 };

@@ -1,7 +1,6 @@
 //! Holes, slits and tight curves.
 
-use crate::common;
-use crate::common::{line, loop_of, seam_of};
+use crate::common::{self, line, loop_of, seam_of};
 use toile_cut::{Corner, CutError, EdgeIndex, Finding, SeamEdge, SeamLine, cut_line};
 use toile_geometry::{Curve, Vec2, ring_area};
 

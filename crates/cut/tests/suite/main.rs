@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-cut NAME::` runs those of one file.
+//! All tests over the public interface, in one program: `cargo test -p toile-cut --test suite NAME::` runs those of one file.
 #![allow(clippy::float_cmp, clippy::unwrap_used)]
 
 mod common;

@@ -1,8 +1,7 @@
 //! Random pieces: no crossings, widths kept, corners in closed form, stretches found by brute force.
 
-use crate::common;
-use crate::common::meet;
 use crate::common::random::random_seam;
+use crate::common::{self, meet};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::sync::atomic::{AtomicUsize, Ordering};

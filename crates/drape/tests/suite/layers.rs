@@ -1,8 +1,7 @@
 //! Cloths worn one over another: the order is kept, what starts in the wrong order is led out, and
 //! what cannot be in order is refused by name.
 
-use crate::support::sheets;
-use crate::support::sheets::{object, sheet};
+use crate::support::sheets::{self, object, sheet};
 use crate::support::solids::sphere;
 use toile_drape::{
     ContactSettings, Damping, DrapeError, Material, Measures, MethodKind, MethodSettings,

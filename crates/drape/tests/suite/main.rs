@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-drape NAME::` runs those of one file.
+//! All tests over the public interface, in one program: `cargo test -p toile-drape --test suite NAME::` runs those of one file.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 mod bounce;

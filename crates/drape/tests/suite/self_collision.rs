@@ -3,8 +3,7 @@
 
 use crate::support::crumpled::{all_pairs, crumpled};
 use crate::support::numbers::Numbers;
-use crate::support::sheets;
-use crate::support::sheets::{object, sheet};
+use crate::support::sheets::{self, object, sheet};
 use toile_drape::collision::{
     ClothSurface, ContactDetector, ContactExemptions, ContactSet, FeaturePair, LinearTrajectories,
     Motions, Nearness, Reach, crossings, nearnesses, truncate_moves,

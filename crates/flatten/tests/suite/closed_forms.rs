@@ -1,7 +1,6 @@
 //! Developable surfaces against their closed forms, the gradient against differences, random disks.
 
-use crate::common;
-use crate::common::{grid, options};
+use crate::common::{self, grid, options};
 use std::f64::consts::PI;
 use toile_flatten::conformal::flipped;
 use toile_flatten::{Flattened, Options, Region, RestEnergy, flatten, tutte::tutte};

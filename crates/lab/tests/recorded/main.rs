@@ -3,7 +3,7 @@
 //!
 //! Results hold to the byte where the processor has the instructions of the one they were recorded on;
 //! elsewhere sums are taken in another order, and numbers are compared with a tolerance.
-//! `TOILE_RECORD=1 cargo test --test recorded` records anew and says what changed most.
+//! `TOILE_RECORD=1 cargo test -p toile-lab --test recorded` records anew and says what changed most.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 #[allow(dead_code)]
@@ -12,7 +12,6 @@ mod band;
 mod ends;
 mod frozen;
 mod motions;
-#[allow(dead_code)]
 #[path = "../../../drape/tests/suite/support/numbers.rs"]
 mod numbers;
 mod record;

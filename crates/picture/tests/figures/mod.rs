@@ -1,5 +1,4 @@
 //! Synthetic surfaces for the pictures' tests.
-#![allow(dead_code)]
 
 use std::f64::consts::PI;
 use toile_geometry::{TriangleMesh, Vec3};

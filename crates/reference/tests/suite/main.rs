@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-reference NAME::` runs those of one file.
+//! All tests over the public interface, in one program: `cargo test -p toile-reference --test suite NAME::` runs those of one file.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 mod builders;
@@ -7,13 +7,11 @@ mod distances;
 mod features;
 mod methods;
 mod policies;
-#[allow(dead_code)]
 #[path = "../../../drape/tests/suite/support/sheets.rs"]
 mod sheets;
 #[allow(dead_code)]
 #[path = "../../../drape/tests/suite/support/solids.rs"]
 mod solids;
-#[allow(dead_code)]
 #[path = "../../../drape/tests/suite/support/strips.rs"]
 mod strips;
 mod xpbd_viscosity;

@@ -1,8 +1,7 @@
 //! How a garment is tried on is kept with its pattern: wearer, size, fabric, layers are there when it is opened again,
 //! undone as one step each, and named where what they refer to is missing.
 
-use crate::support;
-use crate::support::{BAND, files, lasting, make};
+use crate::support::{self, BAND, files, lasting, make};
 use std::path::{Path, PathBuf};
 use toile_measure::{Measurements, Origin};
 use toile_session::{

@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-session NAME::` runs those of one file.
+//! All tests over the public interface, in one program: `cargo test -p toile-session --test suite NAME::` runs those of one file.
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
 mod bodies;
@@ -22,7 +22,6 @@ mod nest_items;
 mod nesting;
 mod pdf_back;
 mod print;
-mod recovery;
 mod replays;
 mod samples;
 mod scene_pictures;

@@ -1,4 +1,4 @@
-//! All tests over the public interface, in one program: `cargo test -p toile-house NAME::` runs those of one file.
+//! All tests over the public interface, in one program: `cargo test -p toile-house --test suite NAME::` runs those of one file.
 
 mod circles;
 mod comments;

@@ -5,14 +5,13 @@ mod girths;
 mod knife;
 mod letters;
 mod meshes;
+mod put_on;
 mod roads;
 mod sides;
 mod sizes;
 mod study;
 mod verdict;
 mod xpbd;
-
-mod put_on;
 
 use crate::common::{toile, words};
 use std::path::{Path, PathBuf};

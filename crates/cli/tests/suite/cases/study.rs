@@ -1,7 +1,6 @@
 //! What rules of the trade cost, and flaws of rolls.
 
-use super::{toile, words};
-use crate::common::patterns;
+use crate::common::{patterns, toile, words};
 use serde_json::Value;
 
 #[test]

@@ -2,7 +2,6 @@
 //! read back, of every shipped pattern and of patterns at random, with notches of every kind at
 //! corners and between them and allowances from 0 to 40 mm.
 
-#[allow(dead_code)]
 mod files;
 pub mod patterns;
 mod region;

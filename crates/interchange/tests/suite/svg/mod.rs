@@ -5,7 +5,7 @@ mod damaged;
 mod drawings;
 mod freesewing;
 mod freesewing_parts;
-#[allow(dead_code)] // Other tests use more of it.
+
 use toile_interchange::{FormatError, ReadOptions, Reading};
 use toile_measure::Measurements;
 use toile_pattern::{Draft, Evaluation, Pattern, Wearer};

@@ -1,11 +1,17 @@
-//! What is unsaved survives a crash: processes are killed, files are damaged.
+//! What is unsaved survives a crash: processes are killed, files are damaged. In a process of its own: a process that is
+//! begun has for a moment every file of this one, locked ones too.
+#![allow(clippy::print_stdout, clippy::unwrap_used)]
 
-use crate::support::{BAND, band};
+#[allow(dead_code)]
+#[path = "suite/support/mod.rs"]
+mod support;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
+use support::{BAND, band};
 use toile_pattern::{Edit, Entity, Pattern, Variable};
 use toile_session::{
     Abandoned, Command, Project, Recovery, Session, Silent, abandoned, read_pattern_text,
@@ -14,8 +20,7 @@ use toile_session::{
 /// Names the folder to the process that is killed.
 const FOLDER: &str = "TOILE_TEST_RECOVERY_FOLDER";
 
-/// A process that is begun has, for a moment, every file of this one, locked ones too: none is begun
-/// while locks are looked at.
+/// No process is begun while locks are looked at.
 static LOCKS: Mutex<()> = Mutex::new(());
 
 fn opened(folder: &Path) -> Session {
@@ -91,10 +96,7 @@ fn a_killed_process_loses_a_second_at_most() {
         let folder = tempfile::tempdir().unwrap();
         let beginning = LOCKS.lock();
         let mut process = Process::new(std::env::current_exe().unwrap())
-            .args([
-                "--exact",
-                "recovery::a_killed_process_loses_a_second_at_most",
-            ])
+            .args(["--exact", "a_killed_process_loses_a_second_at_most"])
             .env(FOLDER, folder.path())
             .stdout(Stdio::null())
             .stderr(Stdio::null())
